@@ -1,0 +1,277 @@
+//! The command line as typed.
+
+use clap::{Args, Parser, Subcommand};
+use malus_scene::Override;
+use std::path::PathBuf;
+
+/// Polarised light in rooms: illuminance or irradiance as a Stokes vector, with an error bar on every number.
+#[derive(Debug, Parser)]
+#[command(name = "malus", version, about, max_term_width = 100, after_help = EXAMPLES)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  malus check office.toml                         what is in the scene, and what is wrong with it
+  malus run office.toml                           compute it; results go to results/office
+  malus run office.toml --relative-error 0.005    the same, to half a per cent at every sensor
+
+Exit status: 0 done, 1 the run failed, 2 bad arguments or a bad scene, 130 interrupted.";
+
+const RUN_EXAMPLES: &str = "\
+Examples:
+  malus run office.toml -o results/glossy --set material.floor.a=0.6
+  malus run office.toml --seconds 60 --threads 4
+  malus run office.toml --samples 65536 --seed 7     repeats to the byte on any machine
+
+Results: sensors.csv (one row a sensor point), grids.csv (one row a sensor), a plan <sensor>.svg of each grid,
+and summary.json. A stop by error or by time prints the --samples that repeats it.
+
+Exit status: 0 done, 1 the run failed, 2 bad arguments or a bad scene, 130 interrupted (Ctrl-C once: what is there
+is written and marked incomplete; twice: at once, without results).";
+
+const CHECK_EXAMPLES: &str = "\
+Examples:
+  malus check office.toml
+  malus check office.toml --set material.floor.rho=0.2 --json
+
+Exit status: 0 the scene can be run (there may be warnings), 2 bad arguments or a bad scene.";
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Compute a scene: writes tables, plans and a summary, prints a short table
+    #[command(after_help = RUN_EXAMPLES)]
+    Run(Box<Run>),
+    /// Read a scene and say what was understood and what is wrong with it; compute nothing
+    #[command(after_help = CHECK_EXAMPLES)]
+    Check(Check),
+}
+
+/// `malus run`.
+#[derive(Args, Debug)]
+pub struct Run {
+    /// Scene file
+    #[arg(value_name = "SCENE.toml")]
+    pub scene: PathBuf,
+
+    /// Directory of the results [default: results/<scene file's name without .toml>]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// Stop after so many walks of light, rounded up to whole rounds.
+    /// A stopping rule given here replaces all those of the scene file; of several, the first one reached stops the run
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub samples: Option<String>,
+
+    /// Stop when the standard error is at most this share at every sensor, e.g. 0.01 for 1 %
+    #[arg(long, value_name = "E", allow_hyphen_values = true)]
+    pub relative_error: Option<String>,
+
+    /// Stop before this time is over, at a checkpoint
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    pub seconds: Option<String>,
+
+    /// Seed of the random numbers: the same seed and samples give the same results
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub seed: Option<String>,
+
+    /// Threads to compute with; results do not depend on it [default: all cores]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub threads: Option<String>,
+
+    /// What surfaces do: polarised, scalar (the same Fresnel reflectance without polarisation) or
+    /// diffuse (no mirror-like part)
+    #[arg(long, value_name = "MODEL")]
+    pub model: Option<String>,
+
+    /// How light is joined to the sensors: auto, local (walks from the lamps) or gather (walks from the sensors)
+    #[arg(long, value_name = "ESTIMATOR")]
+    pub estimator: Option<String>,
+
+    /// Stokes components carried: auto (what the scene needs), intensity (1), linear (3) or full (4)
+    #[arg(long, value_name = "COMPONENTS")]
+    pub representation: Option<String>,
+
+    /// Put a value in place of the scene file's, by its dotted path, e.g. material.floor.a=0.3 (may be repeated)
+    #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
+    pub set: Vec<Override>,
+
+    /// Draw no plans
+    #[arg(long)]
+    pub no_pictures: bool,
+
+    /// Show no progress and no table; warnings and errors stay
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// `malus check`.
+#[derive(Args, Debug)]
+pub struct Check {
+    /// Scene file
+    #[arg(value_name = "SCENE.toml")]
+    pub scene: PathBuf,
+
+    /// Print JSON instead of text
+    #[arg(long)]
+    pub json: bool,
+
+    /// Put a value in place of the scene file's, by its dotted path, e.g. material.floor.a=0.3 (may be repeated)
+    #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
+    pub set: Vec<Override>,
+}
+
+/// `KEY=VALUE` as an override; the value may hold further equals signs.
+fn assignment(text: &str) -> Result<Override, String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() => Ok(Override {
+            key: key.trim().to_owned(),
+            value: value.to_owned(),
+        }),
+        _ => Err("expected KEY=VALUE, such as material.floor.a=0.3".to_owned()),
+    }
+}
+
+/// An option of `run` that stands for a key of the table `[run]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RunKey<'a> {
+    /// The option, without its dashes.
+    pub option: &'static str,
+    /// The key of the scene file.
+    pub key: &'static str,
+    /// The value as typed.
+    pub value: &'a str,
+}
+
+impl RunKey<'_> {
+    /// The same as an override: one set of rules checks what is typed and what is in the file.
+    pub fn as_override(&self) -> Override {
+        Override {
+            key: self.key.to_owned(),
+            value: self.value.to_owned(),
+        }
+    }
+}
+
+impl Run {
+    /// The options given that stand for keys of the scene file.
+    pub fn keys(&self) -> Vec<RunKey<'_>> {
+        [
+            ("samples", "run.samples", &self.samples),
+            ("relative-error", "run.relative_error", &self.relative_error),
+            ("seconds", "run.seconds", &self.seconds),
+            ("seed", "run.seed", &self.seed),
+            ("model", "run.model", &self.model),
+            ("estimator", "run.estimator", &self.estimator),
+            ("representation", "run.representation", &self.representation),
+        ]
+        .into_iter()
+        .filter_map(|(option, key, value)| {
+            let value = value.as_deref()?;
+            Some(RunKey { option, key, value })
+        })
+        .collect()
+    }
+
+    /// All overrides: those of `--set`, then the options, which win.
+    pub fn overrides(&self) -> Vec<Override> {
+        let options = self.keys();
+        let options = options.iter().map(RunKey::as_override);
+        self.set.iter().cloned().chain(options).collect()
+    }
+
+    /// Options that repeat this run to the byte, as a shell takes them.
+    pub fn repeating(&self, samples: u64) -> String {
+        const STOPS: [&str; 3] = ["run.samples", "run.relative_error", "run.seconds"];
+        let mut words = vec!["--samples".to_owned(), samples.to_string()];
+        for entry in &self.set {
+            if !STOPS.contains(&entry.key.as_str()) {
+                words.push("--set".to_owned());
+                words.push(quoted(&format!("{}={}", entry.key, entry.value)));
+            }
+        }
+        for entry in self.keys() {
+            if !STOPS.contains(&entry.key) {
+                words.push(format!("--{}", entry.option));
+                words.push(quoted(entry.value));
+            }
+        }
+        words.join(" ")
+    }
+}
+
+/// A word as a POSIX shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_.,=/:+".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    fn run(words: &[&str]) -> Run {
+        let words = ["malus", "run", "room.toml"].iter().chain(words);
+        match Arguments::try_parse_from(words)
+            .expect("good arguments")
+            .command
+        {
+            Command::Run(run) => *run,
+            Command::Check(_) => unreachable!("run was asked for"),
+        }
+    }
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn options_follow_sets_so_that_they_win() {
+        let run = run(&["--samples", "64", "--set", "run.samples=32"]);
+        let values: Vec<String> = run.overrides().into_iter().map(|o| o.value).collect();
+        assert_eq!(values, ["32", "64"]);
+    }
+
+    #[test]
+    fn a_set_value_may_hold_an_equals_sign() {
+        let run = run(&["--set", "sensor.desk.grid={ counts = [2, 2] }"]);
+        assert_eq!(run.set[0].key, "sensor.desk.grid");
+        assert_eq!(run.set[0].value, "{ counts = [2, 2] }");
+        let words = ["malus", "run", "room.toml", "--set", "material.a"];
+        assert!(Arguments::try_parse_from(words).is_err());
+    }
+
+    #[test]
+    fn a_negative_number_is_a_value_to_be_judged_and_no_option() {
+        assert_eq!(run(&["--samples", "-5"]).samples.as_deref(), Some("-5"));
+    }
+
+    #[test]
+    fn the_options_that_repeat_a_run_replace_its_stopping_rules() {
+        let run = run(&[
+            "--seconds",
+            "60",
+            "--model",
+            "scalar",
+            "--set",
+            "material.\"Wall 1\".a=0",
+            "--set",
+            "run.relative_error=0.1",
+            "--quiet",
+        ]);
+        assert_eq!(
+            run.repeating(4096),
+            "--samples 4096 --set 'material.\"Wall 1\".a=0' --model scalar"
+        );
+    }
+}

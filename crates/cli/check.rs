@@ -1,0 +1,211 @@
+//! `malus check`: what was understood of a scene, and what is wrong with it.
+
+use crate::args;
+use crate::failure::Failure;
+use crate::number::{significant, triple};
+use crate::run::print;
+use crate::table::{Edge, Table};
+use anyhow::Context;
+use malus_scene::{EmitterReport, MaterialReport, Report, Scene, SensorReport};
+
+/// Loads the scene and prints what was understood of it.
+///
+/// # Errors
+/// A bad scene; stdout that cannot be written to.
+pub fn check(command: &args::Check) -> Result<(), Failure> {
+    let scene =
+        Scene::load(&command.scene, &command.set).map_err(|error| Failure::input(error.into()))?;
+    let report = Report::of(&scene);
+    let text = if command.json {
+        serde_json::to_string_pretty(&report)
+            .context("the report cannot be written as JSON")
+            .map_err(Failure::run)?
+            + "\n"
+    } else {
+        text(&report)
+    };
+    print(&text).map_err(Failure::run)
+}
+
+/// The report as people read it; what calls for action stands last.
+fn text(report: &Report) -> String {
+    let unit = report.unit.symbol();
+    let mut text = format!(
+        "{}: {} triangles, {} m²",
+        report.name,
+        report.triangles,
+        significant(report.area_m2, 5)
+    );
+    if let Some([low, high]) = report.bounds_m {
+        text += &format!(", from {} to {} m", triple(low), triple(high));
+    }
+    text += "\n\nMaterials\n";
+    for material in &report.materials {
+        text += &described(material);
+    }
+    text += "\nEmitters\n";
+    text += &emitters(&report.emitters, unit).text("  ");
+    text += "\nSensors\n";
+    text += &sensors(&report.sensors).text("  ");
+    text += &format!(
+        "\nRepresentation {}: {}\n{} % of the directions from the sensors leave the geometry\n",
+        report.representation,
+        report.representation_reason,
+        significant(100.0 * report.escaping, 2)
+    );
+    text += &match report.warnings.len() {
+        0 => "\nNo defects, no warnings\n".to_owned(),
+        count => format!("\nDefects and warnings: {count}\n"),
+    };
+    for warning in &report.warnings {
+        text += &format!("  warning: {warning}\n");
+    }
+    text
+}
+
+/// A material: what was given, value by value with its origin, and what is left at its default in one line.
+fn described(material: &MaterialReport) -> String {
+    let object = match &material.object {
+        Some(object) => format!(" of {object}"),
+        None => String::new(),
+    };
+    let [area, exposed] = [material.area_m2, material.exposed_m2].map(|area| significant(area, 5));
+    let hidden = if area == exposed {
+        String::new()
+    } else {
+        format!(", of which {exposed} m² are not covered by another surface")
+    };
+    let mut text = format!(
+        "  {}{object}: {} triangles, {area} m²{hidden}\n",
+        material.name, material.triangles
+    );
+    let columns = ["value", "", "from"].map(|title| (title.to_owned(), Edge::Left));
+    let mut given = Table::new(columns);
+    let mut defaults = Vec::new();
+    for value in &material.values {
+        if value.origin == "default" {
+            defaults.push(format!("{} {}", value.key, value.value));
+        } else {
+            given.row([
+                value.key.to_owned(),
+                value.value.clone(),
+                value.origin.clone(),
+            ]);
+        }
+    }
+    if !given.is_empty() {
+        text += &given.text("    ");
+    }
+    if !defaults.is_empty() {
+        text += &format!("    default: {}\n", defaults.join(", "));
+    }
+    text
+}
+
+fn emitters(emitters: &[EmitterReport], unit: &str) -> Table {
+    let flux = format!("flux, {unit}");
+    let columns = [
+        ("name", Edge::Left),
+        ("kind", Edge::Left),
+        (flux.as_str(), Edge::Right),
+        ("strength", Edge::Right),
+        ("Stokes vector", Edge::Left),
+    ];
+    let mut table = Table::new(columns.map(|(title, edge)| (title.to_owned(), edge)));
+    for emitter in emitters {
+        let per = match emitter.kind {
+            "point" | "spot" => "sr",
+            _ => "m²",
+        };
+        let [_, polarised @ ..] = emitter.state;
+        let state = if polarised.iter().all(|component| component.abs() <= 0.0) {
+            "unpolarised".to_owned()
+        } else {
+            format!("{:?}", emitter.state)
+        };
+        table.row([
+            emitter.name.clone(),
+            emitter.kind.to_owned(),
+            emitter
+                .flux
+                .map_or("(infinite beam)".to_owned(), |flux| significant(flux, 5)),
+            format!("{} {unit}/{per}", significant(emitter.strength, 5)),
+            state,
+        ]);
+    }
+    table
+}
+
+fn sensors(sensors: &[SensorReport]) -> Table {
+    let columns = [
+        ("name", Edge::Left),
+        ("layout", Edge::Left),
+        ("points", Edge::Right),
+        ("enclosed", Edge::Right),
+        ("from, m", Edge::Left),
+        ("to, m", Edge::Left),
+    ];
+    let mut table = Table::new(columns.map(|(title, edge)| (title.to_owned(), edge)));
+    for sensor in sensors {
+        let [low, high] = sensor.bounds_m.map(triple);
+        table.row([
+            sensor.name.clone(),
+            sensor.layout.to_owned(),
+            sensor.count.to_string(),
+            sensor.enclosed.to_string(),
+            low,
+            high,
+        ]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use malus_scene::ValueReport;
+
+    #[test]
+    fn a_material_shows_where_its_values_come_from() {
+        let value = |key, value: &str, origin: &str| ValueReport {
+            key,
+            value: value.to_owned(),
+            origin: origin.to_owned(),
+        };
+        let material = MaterialReport {
+            name: "plaster".into(),
+            object: None,
+            triangles: 12,
+            area_m2: 6.0,
+            exposed_m2: 5.5,
+            values: vec![
+                value("rho", "0.5", "room.toml:9:7"),
+                value("a", "0", "default"),
+                value("n", "1.5", "default"),
+            ],
+        };
+        assert_eq!(
+            described(&material),
+            "  plaster: 12 triangles, 6.0000 m², of which 5.5000 m² are not covered by another surface\n    \
+             value       from\n    \
+             rho    0.5  room.toml:9:7\n    \
+             default: a 0, n 1.5\n"
+        );
+    }
+
+    #[test]
+    fn an_emitter_has_the_unit_of_its_kind() {
+        let emitter = EmitterReport {
+            name: "lamp".into(),
+            kind: "point",
+            flux: Some(125.663_706),
+            strength: 10.0,
+            state: [1.0, 0.0, 0.0, 0.0],
+        };
+        assert_eq!(
+            emitters(&[emitter], "lm").text(""),
+            "name  kind   flux, lm      strength  Stokes vector\n\
+             lamp  point    125.66  10.000 lm/sr  unpolarised\n"
+        );
+    }
+}

@@ -1,0 +1,110 @@
+//! The directory of results: every file in it is whole or not there.
+
+use anyhow::{Context, Result};
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// A directory that can be written to.
+#[derive(Debug)]
+pub struct Directory(PathBuf);
+
+impl Directory {
+    /// Makes the directory and tries to write into it, so that a long run does not end at a closed door.
+    ///
+    /// # Errors
+    /// It cannot be made or not be written to.
+    pub fn prepare(path: &Path) -> Result<Self> {
+        fs::create_dir_all(path)
+            .with_context(|| format!("{}: cannot make the directory of results", path.display()))?;
+        let directory = Self(path.to_owned());
+        let probe = directory.temporary("probe");
+        File::create(&probe)
+            .and_then(|_| fs::remove_file(&probe))
+            .with_context(|| format!("{}: cannot write results there", path.display()))?;
+        Ok(directory)
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Writes a file beside its place and moves it there when it is whole.
+    ///
+    /// # Errors
+    /// It cannot be written; an earlier file of that name then stays as it was.
+    pub fn write(&self, name: &str, content: &[u8]) -> Result<()> {
+        let path = self.0.join(name);
+        let temporary = self.temporary(name);
+        let written = File::create(&temporary)
+            .and_then(|mut file| {
+                file.write_all(content)?;
+                file.sync_all()
+            })
+            .and_then(|()| fs::rename(&temporary, &path));
+        if written.is_err() {
+            // The first error is the one to report.
+            let _ = fs::remove_file(&temporary);
+        }
+        written.with_context(|| format!("{}: cannot be written", path.display()))
+    }
+
+    /// A name of our own, so that two runs into one directory do not mix their bytes.
+    fn temporary(&self, name: &str) -> PathBuf {
+        self.0.join(format!(".{name}.{}.part", std::process::id()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(path: &Path) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(path)
+            .expect("a directory")
+            .map(|entry| {
+                entry
+                    .expect("an entry")
+                    .file_name()
+                    .into_string()
+                    .expect("text")
+            })
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_written_file_is_whole_and_alone() {
+        let temporary = tempfile::tempdir().expect("a directory");
+        let directory = Directory::prepare(&temporary.path().join("a/b")).expect("writable");
+        directory.write("grids.csv", b"old").expect("written");
+        directory.write("grids.csv", b"new").expect("written again");
+        assert_eq!(names(directory.path()), ["grids.csv"]);
+        assert_eq!(
+            fs::read(directory.path().join("grids.csv")).expect("there"),
+            b"new"
+        );
+    }
+
+    #[test]
+    fn a_failed_write_leaves_nothing_behind() {
+        let temporary = tempfile::tempdir().expect("a directory");
+        let directory = Directory::prepare(temporary.path()).expect("writable");
+        // A directory stands where the file should go, so the last step fails.
+        fs::create_dir(temporary.path().join("sensors.csv")).expect("made");
+        let error = directory.write("sensors.csv", b"1,2").expect_err("no file");
+        assert!(format!("{error:#}").contains("sensors.csv: cannot be written"));
+        assert_eq!(names(temporary.path()), ["sensors.csv"]);
+    }
+
+    #[test]
+    fn a_file_in_the_way_is_found_before_anything_is_computed() {
+        let temporary = tempfile::tempdir().expect("a directory");
+        let path = temporary.path().join("results");
+        fs::write(&path, b"a file").expect("written");
+        let error = Directory::prepare(&path).expect_err("no directory");
+        assert!(format!("{error:#}").contains("cannot make the directory of results"));
+    }
+}

@@ -1,0 +1,89 @@
+//! `summary.json`: how the results came about.
+
+use crate::label;
+use anyhow::Result;
+use malus_estimator::{Results, Stop};
+use malus_scene::{Scene, Settings, Unit};
+use serde::Serialize;
+
+/// What only the program knows of a run.
+#[derive(Clone, Debug)]
+pub struct Circumstances {
+    /// Time the run took, in seconds.
+    pub seconds: f64,
+    /// Threads it ran on.
+    pub threads: usize,
+    /// Options of `malus run` that repeat it to the byte.
+    pub repeat: String,
+    /// Warnings of the scene and of the run.
+    pub warnings: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Summary<'a> {
+    scene: &'a str,
+    unit: Unit,
+    version: &'a str,
+    seed: u64,
+    model: &'a str,
+    representation: &'a str,
+    representation_reason: &'a str,
+    estimator: &'a str,
+    estimator_reason: &'a str,
+    samples: u64,
+    dof: u32,
+    seconds: f64,
+    threads: usize,
+    triangles: usize,
+    complete: bool,
+    stop: &'a str,
+    repeat: &'a str,
+    relative_error_max: f64,
+    warnings: &'a [String],
+}
+
+/// The summary as JSON.
+///
+/// # Errors
+/// It cannot be written as JSON.
+pub fn json(
+    scene: &Scene,
+    settings: &Settings,
+    results: &Results,
+    circumstances: &Circumstances,
+) -> Result<Vec<u8>> {
+    let summary = Summary {
+        scene: &scene.name,
+        unit: scene.unit,
+        version: env!("CARGO_PKG_VERSION"),
+        seed: settings.seed,
+        model: label::model(settings.model),
+        representation: label::representation(results.representation),
+        representation_reason: &results.representation_reason,
+        estimator: label::estimator(results.estimator),
+        estimator_reason: &results.estimator_reason,
+        samples: results.samples,
+        dof: results.dof,
+        seconds: circumstances.seconds,
+        threads: circumstances.threads,
+        triangles: scene.surfaces.len(),
+        complete: results.complete,
+        stop: stop(results.stop),
+        repeat: &circumstances.repeat,
+        relative_error_max: results.relative_error_max,
+        warnings: &circumstances.warnings,
+    };
+    let mut text = serde_json::to_vec_pretty(&summary)?;
+    text.push(b'\n');
+    Ok(text)
+}
+
+/// What ended the run, as a key.
+fn stop(stop: Stop) -> &'static str {
+    match stop {
+        Stop::RelativeError => "relative_error",
+        Stop::Samples => "samples",
+        Stop::Time => "seconds",
+        Stop::Interrupted => "interrupted",
+    }
+}

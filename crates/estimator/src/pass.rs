@@ -1,0 +1,138 @@
+//! Which models one run computes, and which walks serve which of them.
+
+use crate::emitters::Emitters;
+use crate::trace::Medium;
+use malus_optics::Representation;
+use malus_scene::{Material, Model, Scene, Settings};
+use std::ops::AddAssign;
+
+/// Which of a sensor's sums holds what. The main model's Stokes components come first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Channels {
+    /// Components of the main model.
+    pub components: usize,
+    /// S0 of the scalar model, where asked for; 0 where the main model's S0 is it.
+    pub scalar: Option<usize>,
+    /// S0 of the diffuse model, likewise.
+    pub diffuse: Option<usize>,
+    /// The scalar model evaluated along the main model's walks.
+    pub along: Option<usize>,
+    /// A model that needs walks of its own.
+    pub apart: Option<usize>,
+    /// Sums a sensor.
+    pub count: usize,
+}
+
+impl Channels {
+    /// Layout for a run of the scene with so many components.
+    #[must_use]
+    pub(crate) fn new(scene: &Scene, settings: &Settings, representation: Representation) -> Self {
+        let components = match settings.model {
+            Model::Polarised => representation.components(),
+            Model::Scalar | Model::Diffuse => 1,
+        };
+        let mirrors = has_mirrors(&scene.materials);
+        let mut channels = Self {
+            components,
+            scalar: None,
+            diffuse: None,
+            along: None,
+            apart: None,
+            count: components,
+        };
+        if settings.compare_scalar {
+            channels.scalar = Some(match settings.model {
+                Model::Polarised if components > 1 => channels.open(false),
+                Model::Diffuse if mirrors => channels.open(true),
+                _ => 0,
+            });
+        }
+        if settings.compare_diffuse {
+            channels.diffuse = Some(match settings.model {
+                Model::Polarised | Model::Scalar if mirrors => channels.open(true),
+                _ => 0,
+            });
+        }
+        channels
+    }
+
+    fn open(&mut self, apart: bool) -> usize {
+        let channel = self.count;
+        self.count += 1;
+        if apart {
+            self.apart = Some(channel);
+        } else {
+            self.along = Some(channel);
+        }
+        channel
+    }
+}
+
+/// True if some part of the reflection is mirror-like.
+#[must_use]
+pub(crate) fn is_mirrorlike(material: &Material) -> bool {
+    material.optics.representation() > Representation::Intensity
+}
+
+/// True if anything reflects like a mirror.
+#[must_use]
+pub(crate) fn has_mirrors(materials: &[Material]) -> bool {
+    materials.iter().any(|m| is_mirrorlike(m))
+}
+
+/// The materials of a model: without their mirror-like part for the diffuse one.
+#[must_use]
+pub(crate) fn materials_of(model: Model, materials: &[Material]) -> Vec<Material> {
+    let mut materials = materials.to_vec();
+    if model == Model::Diffuse {
+        for material in &mut materials {
+            material.optics = material.optics.without_fresnel();
+        }
+    }
+    materials
+}
+
+/// The kinds of walk that a run takes.
+#[derive(Clone, Copy)]
+pub(crate) struct Passes<'a> {
+    /// Walks for the main model.
+    pub main: Medium<'a>,
+    /// Walks for the model that needs its own, by the same random numbers.
+    pub apart: Option<Medium<'a>>,
+}
+
+impl<'a> Passes<'a> {
+    /// Walks through the materials of the main model, and through `apart` where that is given.
+    pub(crate) fn new(
+        scene: &'a Scene,
+        emitters: &'a Emitters<'a>,
+        main: &'a [Material],
+        apart: Option<&'a [Material]>,
+    ) -> Self {
+        let medium = |materials| Medium {
+            surfaces: &scene.surfaces,
+            materials,
+            emitters,
+        };
+        Self {
+            main: medium(main),
+            apart: apart.map(medium),
+        }
+    }
+}
+
+/// What walks have cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Effort {
+    /// Rays asked of the geometry.
+    pub rays: u64,
+    /// Walks cut off at their greatest length.
+    pub truncated: u64,
+}
+
+impl AddAssign for Effort {
+    fn add_assign(&mut self, other: Self) {
+        self.rays += other.rays;
+        self.truncated += other.truncated;
+    }
+}

@@ -1,0 +1,164 @@
+//! Uniform numbers, each a pure function of (seed, replica, stream, walk, depth, purpose).
+//!
+//! Nothing here has a state that a walk could leave behind, so walks that part company meet again at
+//! the next vertex, and no number depends on the thread that asked for it.
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// What a block of four uniforms is used for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// Where a walk from an emitter starts: which emitter, and where on it.
+    Emit = 0,
+    /// Lobe and direction in which a walk goes on.
+    Scatter = 1,
+    /// The point of an emitter that a vertex looks at.
+    Connect = 2,
+    /// The direction in which a walk leaves an emitter.
+    Launch = 3,
+}
+
+const PURPOSES: u64 = 4;
+const BLOCK: u64 = 4;
+
+/// Weyl increment of SplitMix64 (Steele, Lea & Flood 2014): the odd number nearest 2⁶⁴/φ.
+const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+
+/// The finaliser of SplitMix64, variant 13 of Stafford's mixers.
+fn mixed(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}
+
+/// The numbers of one replica.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stream {
+    key: u64,
+}
+
+impl Stream {
+    /// Stream of a replica. Its key comes from ChaCha8, so that neighbouring seeds and replicas share nothing.
+    #[must_use]
+    pub(crate) fn new(seed: u64, replica: u32) -> Self {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        generator.set_stream(u64::from(replica));
+        Self {
+            key: generator.next_u64(),
+        }
+    }
+
+    /// A stream of its own inside this one, for one sensor say.
+    #[must_use]
+    pub(crate) fn branch(self, index: u64) -> Self {
+        Self {
+            key: mixed(self.key ^ mixed(index.wrapping_add(1).wrapping_mul(GOLDEN))),
+        }
+    }
+
+    /// The `index`-th walk of this stream.
+    #[must_use]
+    pub(crate) fn walk(self, index: u64) -> Uniforms {
+        Uniforms {
+            key: mixed(
+                self.key
+                    .wrapping_add(mixed(index.wrapping_mul(GOLDEN) ^ GOLDEN)),
+            ),
+        }
+    }
+}
+
+/// All uniform numbers of one walk.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Uniforms {
+    key: u64,
+}
+
+impl Uniforms {
+    /// Four numbers in [0, 1), multiples of 2⁻⁵³, for the vertex at `depth`.
+    #[must_use]
+    pub(crate) fn at(self, depth: u32, purpose: Purpose) -> [f64; 4] {
+        let first = (u64::from(depth) * PURPOSES + purpose as u64) * BLOCK;
+        std::array::from_fn(|i| {
+            let counter = first + i as u64 + 1;
+            let bits = mixed(self.key.wrapping_add(counter.wrapping_mul(GOLDEN)));
+            (bits >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_lie_in_the_half_open_unit_interval_and_fill_it_evenly() {
+        // χ² over 64 cells for each of the four coordinates, 65,536 draws: mean 63, σ = √126.
+        let stream = Stream::new(1, 0);
+        let mut counts = [[0u32; 64]; 4];
+        for index in 0..65_536 {
+            for (u, cells) in stream
+                .walk(index)
+                .at(3, Purpose::Scatter)
+                .into_iter()
+                .zip(&mut counts)
+            {
+                assert!((0.0..1.0).contains(&u));
+                cells[(u * 64.0) as usize] += 1;
+            }
+        }
+        for cells in counts {
+            let chi2: f64 = cells
+                .iter()
+                .map(|&c| (f64::from(c) - 1024.0).powi(2) / 1024.0)
+                .sum();
+            assert!((chi2 - 63.0).abs() < 4.5 * 126f64.sqrt(), "χ² = {chi2}");
+        }
+    }
+
+    #[test]
+    fn neighbours_in_every_argument_are_uncorrelated() {
+        let n = 20_000u64;
+        let reference = |i: u64| Stream::new(7, 3).branch(5).walk(i).at(2, Purpose::Scatter)[0];
+        type Draw = fn(u64) -> f64;
+        let neighbours: [(&str, Draw); 6] = [
+            ("seed", |i| {
+                Stream::new(8, 3).branch(5).walk(i).at(2, Purpose::Scatter)[0]
+            }),
+            ("replica", |i| {
+                Stream::new(7, 4).branch(5).walk(i).at(2, Purpose::Scatter)[0]
+            }),
+            ("branch", |i| {
+                Stream::new(7, 3).branch(6).walk(i).at(2, Purpose::Scatter)[0]
+            }),
+            ("walk", |i| {
+                Stream::new(7, 3)
+                    .branch(5)
+                    .walk(i + 1)
+                    .at(2, Purpose::Scatter)[0]
+            }),
+            ("depth", |i| {
+                Stream::new(7, 3).branch(5).walk(i).at(3, Purpose::Scatter)[0]
+            }),
+            ("purpose", |i| {
+                Stream::new(7, 3).branch(5).walk(i).at(2, Purpose::Connect)[0]
+            }),
+        ];
+        for (argument, neighbour) in neighbours {
+            let covariance: f64 = (0..n)
+                .map(|i| (reference(i) - 0.5) * (neighbour(i) - 0.5))
+                .sum::<f64>()
+                / n as f64;
+            // The product of two independent uniforms less ½ has the standard deviation 1/12.
+            let z = covariance * 12.0 * (n as f64).sqrt();
+            assert!(z.abs() < 4.5, "{argument}: z = {z}");
+        }
+    }
+
+    #[test]
+    fn the_same_arguments_give_the_same_number() {
+        let u = Stream::new(1, 2).branch(3).walk(4).at(5, Purpose::Emit);
+        assert_eq!(u, Stream::new(1, 2).branch(3).walk(4).at(5, Purpose::Emit));
+    }
+}

@@ -1,0 +1,116 @@
+//! What a run gives back: a reading at every sensor point, padded to four Stokes components.
+
+use malus_optics::Representation;
+use malus_scene::Estimator;
+
+/// The outcome of a run.
+#[derive(Debug, Clone)]
+pub struct Results {
+    /// One entry a sensor group of the scene, in its order; inside, one reading a sensor point.
+    pub groups: Vec<Group>,
+    /// Walks taken: in all for `local`, at each sensor point for `gather`.
+    /// Given as `--samples`, it repeats this run to the byte.
+    pub samples: u64,
+    /// Degrees of freedom of every standard error: the number of replicas less one.
+    pub dof: u32,
+    /// Stokes components that were computed.
+    pub representation: Representation,
+    /// Why that representation.
+    pub representation_reason: String,
+    /// The estimator used: never [`Estimator::Auto`].
+    pub estimator: Estimator,
+    /// Why that estimator.
+    pub estimator_reason: String,
+    /// False where the run was interrupted before its stopping rule was met.
+    pub complete: bool,
+    /// What ended the run.
+    pub stop: Stop,
+    /// Largest se0 / max(S0, 10⁻³ · mean S0) over the free sensors.
+    pub relative_error_max: f64,
+    /// Paths that the estimator cannot see, walks that were truncated.
+    pub warnings: Vec<String>,
+}
+
+/// The readings of one sensor group.
+#[derive(Debug, Clone)]
+pub struct Group {
+    /// One reading a sensor point.
+    pub readings: Vec<Reading>,
+    /// Mean of S0 over the free points, unit/m².
+    pub mean: f64,
+    /// Standard error of `mean`; points that share walks are correlated, and this knows it.
+    pub mean_standard_error: f64,
+}
+
+/// The irradiance Stokes vector at one sensor point, in unit/m².
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// True where the point lies inside a closed solid: everything else is then 0.
+    pub enclosed: bool,
+    /// S0, S1, S2, S3; 0 where the representation leaves a component out.
+    pub stokes: [f64; 4],
+    /// Their standard errors.
+    pub standard_error: [f64; 4],
+    /// Degree of linear polarisation √(S1² + S2²)/S0; 0 where S0 is 0.
+    pub dolp: f64,
+    /// Its standard error.
+    pub dolp_standard_error: f64,
+    /// The scalar model (same Fresnel reflectance, no polarisation) from the same walks, where asked for.
+    pub scalar: Option<Paired>,
+    /// The diffuse model (a = 0) from walks driven by the same random numbers, where asked for.
+    pub diffuse: Option<Paired>,
+}
+
+/// Another model's S0 beside the main one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Paired {
+    /// S0 of the other model, unit/m².
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// S0 of the main model less `value`.
+    pub difference: f64,
+    /// Standard error of the difference, from paired replicas.
+    pub difference_standard_error: f64,
+}
+
+/// What ended a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stop {
+    /// The relative error asked for was reached.
+    RelativeError,
+    /// The number of samples asked for was taken.
+    Samples,
+    /// [`Answer::Enough`] at a checkpoint: the time asked for is used up.
+    Time,
+    /// [`Answer::Interrupt`].
+    Interrupted,
+}
+
+/// Where a run stands; handed to the `watch` callback of [`crate::run`] between steps.
+#[derive(Debug, Clone, Copy)]
+pub struct Progress {
+    /// Samples taken so far (as in [`Results::samples`]).
+    pub samples: u64,
+    /// Samples at the next checkpoint: stopping is decided at checkpoints only.
+    pub next_checkpoint: u64,
+    /// Samples at which the run ends at the latest, where given.
+    pub samples_limit: Option<u64>,
+    /// True where `samples` is a checkpoint: only here is [`Answer::Enough`] heeded.
+    pub checkpoint: bool,
+    /// Largest relative standard error at the last checkpoint, where one was reached.
+    pub relative_error: Option<f64>,
+    /// The relative error aimed at, where given.
+    pub relative_error_goal: Option<f64>,
+}
+
+/// The watcher's answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Answer {
+    /// Go on.
+    Continue,
+    /// Stop at this checkpoint; the run counts as complete. Not heeded between checkpoints.
+    Enough,
+    /// Stop now with what is there; the run counts as incomplete.
+    Interrupt,
+}

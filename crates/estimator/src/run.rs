@@ -1,0 +1,170 @@
+//! A run: replicas taken further in steps until a stopping rule holds.
+
+use crate::choose::{blind_spots, choose};
+use crate::emitters::Emitters;
+use crate::engine::Engine;
+use crate::exact;
+use crate::pass::{Channels, Passes, materials_of};
+use crate::reading::Readings;
+use crate::receiver::Receiver;
+use crate::results::{Answer, Progress, Results, Stop};
+use crate::statistics::REPLICAS;
+use crate::trace::LONGEST;
+use malus_optics::Representation;
+use malus_scene::{Model, Scene, Settings};
+
+/// Walks a replica before the first checkpoint: fewer would not tell an error from luck.
+const FIRST_CHECKPOINT: u64 = 16;
+
+/// The first checkpoint after `taken` walks a replica: four to the octave.
+fn next_checkpoint(taken: u64) -> u64 {
+    if taken < FIRST_CHECKPOINT {
+        return FIRST_CHECKPOINT;
+    }
+    let spacing = 1 << (taken.ilog2() - 2);
+    (taken / spacing + 1) * spacing
+}
+
+/// Evaluates a scene.
+///
+/// `settings` stand in for the scene's own. `watch` is told between steps how far the run is, and answers whether it
+/// goes on; its answers are the only thing besides scene and settings that a result depends on, and a run that it
+/// stopped at n samples has the bytes of a run that was given `samples = n`.
+pub fn run(
+    scene: &Scene,
+    settings: &Settings,
+    watch: &mut dyn FnMut(&Progress) -> Answer,
+) -> Results {
+    let representation = match settings.model {
+        Model::Polarised => settings.representation.unwrap_or(scene.need.representation),
+        Model::Scalar | Model::Diffuse => Representation::Intensity,
+    };
+    match representation {
+        Representation::Intensity => run_with::<1>(scene, settings, representation, watch),
+        Representation::Linear => run_with::<3>(scene, settings, representation, watch),
+        Representation::Full => run_with::<4>(scene, settings, representation, watch),
+    }
+}
+
+fn run_with<const N: usize>(
+    scene: &Scene,
+    settings: &Settings,
+    representation: Representation,
+    watch: &mut dyn FnMut(&Progress) -> Answer,
+) -> Results {
+    let channels = Channels::new(scene, settings, representation);
+    let emitters = Emitters::new(scene);
+    let main = materials_of(settings.model, &scene.materials);
+    let apart = channels.apart.map(|_| match settings.model {
+        Model::Diffuse => scene.materials.clone(),
+        Model::Polarised | Model::Scalar => materials_of(Model::Diffuse, &scene.materials),
+    });
+    let receivers = Receiver::all(scene);
+    let engine = Engine::<N> {
+        passes: Passes::new(scene, &emitters, &main, apart.as_deref()),
+        channels,
+        receivers: &receivers,
+        seed: settings.seed,
+    };
+    let chosen = choose(&engine, settings.estimator);
+    let exact = exact::from_sources::<N>(&engine.passes.main, &receivers);
+    let readings = Readings::new(scene, channels, &receivers, &exact);
+
+    let mut tally = engine.tally();
+    let mut taken = 0;
+    let mut truncated = 0;
+    let mut reached = None;
+    let limit = settings
+        .samples
+        .map(|samples| samples.div_ceil(u64::from(REPLICAS)).max(1));
+    let stop = loop {
+        let checkpoint = next_checkpoint(taken).min(limit.unwrap_or(u64::MAX));
+        let until = checkpoint.min(taken + engine.step());
+        truncated += engine
+            .advance(chosen.estimator, &mut tally, until)
+            .truncated;
+        taken = until;
+        if taken == checkpoint {
+            reached = Some(readings.relative_error(&tally));
+        }
+        let progress = Progress {
+            samples: taken * u64::from(REPLICAS),
+            next_checkpoint: next_checkpoint(taken).min(limit.unwrap_or(u64::MAX))
+                * u64::from(REPLICAS),
+            samples_limit: limit.map(|n| n * u64::from(REPLICAS)),
+            checkpoint: taken == checkpoint,
+            relative_error: reached,
+            relative_error_goal: settings.relative_error,
+        };
+        let answer = watch(&progress);
+        if answer == Answer::Interrupt {
+            break Stop::Interrupted;
+        }
+        if taken == checkpoint {
+            if let (Some(error), Some(goal)) = (reached, settings.relative_error)
+                && error <= goal
+            {
+                break Stop::RelativeError;
+            }
+            if Some(taken) == limit {
+                break Stop::Samples;
+            }
+            if answer == Answer::Enough {
+                break Stop::Time;
+            }
+        }
+    };
+
+    let relative_error_max = readings.relative_error(&tally);
+    let mut warnings = blind_spots(&engine.passes.main, chosen.estimator);
+    if truncated > 0 {
+        warnings.push(format!(
+            "{truncated} walks were cut off after {LONGEST} reflections: what they still carried is missing"
+        ));
+    }
+    Results {
+        groups: readings.groups(&tally),
+        samples: taken * u64::from(REPLICAS),
+        dof: REPLICAS - 1,
+        representation,
+        representation_reason: representation_reason(scene, settings),
+        estimator: chosen.estimator,
+        estimator_reason: chosen.reason,
+        complete: stop != Stop::Interrupted,
+        stop,
+        relative_error_max,
+        warnings,
+    }
+}
+
+fn representation_reason(scene: &Scene, settings: &Settings) -> String {
+    match (settings.model, settings.representation) {
+        (Model::Scalar, _) => "the scalar model has no polarisation".into(),
+        (Model::Diffuse, _) => "the diffuse model has no polarisation".into(),
+        (Model::Polarised, None) => scene.need.reason.clone(),
+        (Model::Polarised, Some(asked)) if asked < scene.need.representation => {
+            format!(
+                "asked for, although the scene needs more: {}",
+                scene.need.reason
+            )
+        }
+        (Model::Polarised, Some(_)) => "asked for".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn checkpoints_stand_four_to_the_octave() {
+        let mut taken = 0;
+        let checkpoints: Vec<u64> = (0..10)
+            .map(|_| {
+                taken = next_checkpoint(taken);
+                taken
+            })
+            .collect();
+        assert_eq!(checkpoints, [16, 20, 24, 28, 32, 40, 48, 56, 64, 80]);
+    }
+}

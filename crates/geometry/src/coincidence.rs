@@ -1,0 +1,183 @@
+//! Surfaces that lie in one another: the later one exists, the earlier one is hidden there.
+
+use crate::bvh::Tree;
+use crate::polygon::{Plane, Polygon};
+use crate::{Mesh, Triangle};
+use std::collections::BTreeMap;
+
+/// Cosine² of the angle beyond which planes are not parallel, however small the triangles.
+const PARALLEL: f64 = 0.98;
+
+/// An area over which one surface hides another that lies in the same place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Coincidence {
+    /// Object of the earlier triangles, which do not exist there.
+    pub hidden_object: u32,
+    /// Surface of the earlier triangles.
+    pub hidden_surface: u32,
+    /// Object of the later triangles, which exist there.
+    pub covering_object: u32,
+    /// Surface of the later triangles.
+    pub covering_surface: u32,
+    /// Hidden area in m².
+    pub area: f64,
+}
+
+/// Object and surface of a hidden triangle and of the one that covers it.
+pub(crate) type Kind = [u32; 4];
+
+/// Which triangles are covered, and by which later ones.
+#[derive(Debug, Default)]
+pub(crate) struct Coverings {
+    /// (hidden, covering), ascending.
+    pairs: Vec<(u32, u32)>,
+    /// One bit a triangle: whether it is covered at all. Empty where nothing is.
+    covered: Vec<u64>,
+}
+
+impl Coverings {
+    /// Pairs of parallel triangles whose overlap lies within `tolerance` (in m) of both planes and is wider than it.
+    pub fn of(mesh: &Mesh, tree: &Tree, tolerance: f64) -> Self {
+        let mut pairs = Vec::new();
+        let mut candidates = Vec::new();
+        for (index, _) in (0_u32..).zip(&mesh.triangles) {
+            let hidden = mesh.triangle(index as usize);
+            let vector = hidden.area_vector();
+            candidates.clear();
+            tree.near(&hidden.vertices, tolerance, |other| {
+                if other > index {
+                    candidates.push(other);
+                }
+            });
+            candidates.retain(|&other| {
+                let other = mesh.triangle(other as usize).area_vector();
+                let dot = vector.dot(other);
+                dot * dot >= PARALLEL * vector.length_squared() * other.length_squared()
+            });
+            if candidates.is_empty() {
+                continue;
+            }
+            let plane = Plane::of(&hidden);
+            let polygon = plane.polygon(&hidden);
+            for &other in &candidates {
+                if coincide(&plane, &polygon, &mesh.triangle(other as usize), tolerance) {
+                    pairs.push((index, other));
+                }
+            }
+        }
+        pairs.sort_unstable();
+        let mut covered = Vec::new();
+        if !pairs.is_empty() {
+            covered.resize(mesh.len().div_ceil(64), 0);
+            for &(hidden, _) in &pairs {
+                covered[hidden as usize / 64] |= 1 << (hidden % 64);
+            }
+        }
+        Self { pairs, covered }
+    }
+
+    /// Whether some later triangle covers part of this one.
+    #[inline]
+    pub fn any(&self, triangle: u32) -> bool {
+        self.covered
+            .get(triangle as usize / 64)
+            .is_some_and(|bits| bits >> (triangle % 64) & 1 == 1)
+    }
+
+    /// The later triangles that cover part of this one, the latest first.
+    pub fn over(&self, triangle: u32) -> impl Iterator<Item = u32> {
+        let range = if self.any(triangle) {
+            let start = self.pairs.partition_point(|pair| pair.0 < triangle);
+            let end = self.pairs.partition_point(|pair| pair.0 <= triangle);
+            start..end
+        } else {
+            0..0
+        };
+        self.pairs[range].iter().rev().map(|pair| pair.1)
+    }
+
+    /// Area in m² that each covering triangle hides, the latest first, and what is left of the hidden one.
+    fn shares(&self, mesh: &Mesh, hidden: u32) -> (Vec<(u32, f64)>, f64) {
+        let triangle = mesh.triangle(hidden as usize);
+        let plane = Plane::of(&triangle);
+        let mut left = vec![plane.polygon(&triangle)];
+        let mut before: f64 = triangle.area();
+        let mut shares = Vec::new();
+        for covering in self.over(hidden) {
+            let cover = plane.polygon(&mesh.triangle(covering as usize));
+            left = left
+                .into_iter()
+                .flat_map(|piece| piece.minus(&cover))
+                .collect();
+            let after = left.iter().map(Polygon::area).sum();
+            shares.push((covering, before - after));
+            before = after;
+        }
+        (shares, before)
+    }
+
+    /// Area of a triangle that no later one covers, in m².
+    pub fn exposed_area(&self, mesh: &Mesh, triangle: u32) -> f64 {
+        if self.any(triangle) {
+            self.shares(mesh, triangle).1
+        } else {
+            mesh.triangle(triangle as usize).area()
+        }
+    }
+
+    /// Adds up who hides how much of whom; each place counts once, for the latest surface there.
+    pub fn add_to(&self, mesh: &Mesh, areas: &mut BTreeMap<Kind, f64>) {
+        for same in self.pairs.chunk_by(|one, next| one.0 == next.0) {
+            let hidden = same[0].0;
+            let whole = mesh.triangle(hidden as usize).area();
+            for (covering, area) in self.shares(mesh, hidden).0 {
+                if area > 1e-12 * whole {
+                    *areas.entry(kind(mesh, hidden, covering)).or_default() += area;
+                }
+            }
+        }
+    }
+}
+
+/// What a pair of triangles is booked under.
+pub(crate) fn kind(mesh: &Mesh, hidden: u32, covering: u32) -> Kind {
+    let (hidden, covering) = (hidden as usize, covering as usize);
+    [
+        mesh.objects[hidden],
+        mesh.surfaces[hidden],
+        mesh.objects[covering],
+        mesh.surfaces[covering],
+    ]
+}
+
+/// The sums of [`Coverings::add_to`] as a list.
+pub(crate) fn list(areas: BTreeMap<Kind, f64>) -> Vec<Coincidence> {
+    let row = |(kind, area): (Kind, f64)| Coincidence {
+        hidden_object: kind[0],
+        hidden_surface: kind[1],
+        covering_object: kind[2],
+        covering_surface: kind[3],
+        area,
+    };
+    areas.into_iter().map(row).collect()
+}
+
+/// Whether another triangle lies in a plane over an area that is wider than the tolerance in every direction, so that
+/// triangles that share or touch an edge do not count.
+fn coincide(plane: &Plane, polygon: &Polygon, other: &Triangle, tolerance: f64) -> bool {
+    let other = plane.polygon(other);
+    if other.0.iter().all(|corner| corner.z > tolerance)
+        || other.0.iter().all(|corner| corner.z < -tolerance)
+        || polygon.separates(&other, tolerance)
+        || other.separates(polygon, tolerance)
+    {
+        return false;
+    }
+    let common = other.intersection(polygon);
+    common.area() > tolerance * common.width()
+        && common.0.iter().all(|corner| corner.z.abs() <= tolerance)
+}
+
+#[cfg(test)]
+mod tests;

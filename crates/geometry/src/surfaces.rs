@@ -1,0 +1,238 @@
+//! What a ray meets first, and what sees what.
+
+use crate::bvh::Tree;
+use crate::clean::{self, Cleaned};
+use crate::coincidence::{self, Coincidence, Coverings};
+use crate::crossing::Line;
+use crate::{Error, Mesh, Triangle};
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// All surfaces of a scene, ready to be asked what rays meet.
+///
+/// Where two surfaces lie in one another the later one in file order exists; the earlier one is not met there, from
+/// either side. Triangles without area and all but the last of exact duplicates are left out at the start, so indices
+/// are those of [`mesh`](Self::mesh), not of the mesh given.
+pub struct Surfaces {
+    mesh: Mesh,
+    tree: Tree,
+    centre: DVec3,
+    radius: f64,
+    coverings: Coverings,
+    coincidences: Vec<Coincidence>,
+    cleaned: Vec<Cleaned>,
+}
+
+/// Where a ray meets a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Index of the triangle.
+    pub triangle: u32,
+    /// Distance from the ray's origin, in m; positive.
+    pub distance: f64,
+    /// Place of the hit, in m. On the triangle to within rounding, or past its edge by a quarter of
+    /// [`Surfaces::offset`] at most.
+    pub position: DVec3,
+}
+
+impl Surfaces {
+    /// Cleans a mesh, builds the tree over it and finds coincident surfaces. An empty mesh is allowed.
+    ///
+    /// # Errors
+    /// Where a coordinate in use is not finite, a vertex does not exist, the lists differ in length, or there are more
+    /// than 2³¹ − 1 triangles.
+    pub fn new(mut mesh: Mesh) -> Result<Self, Error> {
+        clean::check(&mesh)?;
+        let (centre, radius) = clean::bounding_sphere(&mesh);
+        let slack = clean::slack(centre, radius);
+        let waste = clean::waste(&mesh, slack);
+        let mut hidden = BTreeMap::new();
+        for &(dropped, kept) in &waste.duplicates {
+            let kind = coincidence::kind(&mesh, dropped, kept);
+            if kind[..2] != kind[2..] {
+                *hidden.entry(kind).or_default() += mesh.triangle(dropped as usize).area();
+            }
+        }
+        let cleaned = waste.counted(&mesh);
+        waste.remove_from(&mut mesh);
+        drop(waste);
+        let tree = Tree::new(&mesh, centre, radius, slack);
+        let coverings = Coverings::of(&mesh, &tree, tolerance(centre, radius));
+        coverings.add_to(&mesh, &mut hidden);
+        Ok(Self {
+            mesh,
+            tree,
+            centre,
+            radius,
+            coverings,
+            coincidences: coincidence::list(hidden),
+            cleaned,
+        })
+    }
+
+    /// The first surface that a ray meets, at a distance above 0; of several at one distance the latest.
+    ///
+    /// `origin` in m, `direction` a unit vector. Closed meshes have no cracks: a line through an edge or a vertex meets
+    /// one of the triangles there, also where one long edge lies against several short ones.
+    #[must_use]
+    pub fn nearest(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        let met = self.tree.nearest(origin, direction, |triangle, line| {
+            self.exists(triangle, line)
+        })?;
+        Some(Hit {
+            triangle: met.triangle,
+            distance: met.distance,
+            position: met.position,
+        })
+    }
+
+    /// Θ(r, r′): whether no surface crosses the open segment between two points (in m).
+    ///
+    /// Exactly symmetric. Callers move ends that lie on a surface off it by [`offset`](Self::offset).
+    #[must_use]
+    pub fn visible(&self, from: DVec3, to: DVec3) -> bool {
+        // One order for both ways, so that rounding is the same.
+        let (from, to) = if from.to_array() <= to.to_array() {
+            (from, to)
+        } else {
+            (to, from)
+        };
+        let length = from.distance(to);
+        if length <= 0.0 || length.is_nan() {
+            return true;
+        }
+        let direction = (to - from) / length;
+        !self
+            .tree
+            .blocked(from, direction, length, |triangle, line| {
+                self.exists(triangle, line)
+            })
+    }
+
+    /// Whether a ray meets no surface up to infinity. `from` in m, `direction` a unit vector.
+    #[must_use]
+    pub fn escapes(&self, from: DVec3, direction: DVec3) -> bool {
+        !self
+            .tree
+            .blocked(from, direction, f64::INFINITY, |triangle, line| {
+                self.exists(triangle, line)
+            })
+    }
+
+    /// Whether a triangle is there for a line that crosses it: not where the line crosses one that covers it too.
+    ///
+    /// The same line asks both, so none slips through between the edge of one and the rim of the other.
+    #[inline]
+    fn exists(&self, triangle: u32, line: &Line) -> bool {
+        !self.coverings.any(triangle)
+            || !self
+                .coverings
+                .over(triangle)
+                .any(|covering| line.crossing(&self.triangle(covering).vertices).is_some())
+    }
+
+    /// Distance in m by which a ray's end is moved off its surface along the normal: 2⁻⁴⁰ (|centre| + radius).
+    ///
+    /// Four times the thickness that surfaces have for rays, and some 10³ times the rounding error of a hit: it leaves no
+    /// self-hit in closed spheres and boxes of side 10⁻³ to 10⁴ m, at the origin or 10⁴ m from it.
+    #[must_use]
+    pub fn offset(&self) -> f64 {
+        4.0 * clean::slack(self.centre, self.radius)
+    }
+
+    /// Distance in m within which things lie in one place: 8 ε (|centre| + radius), ε that of single precision, in which
+    /// most mesh files hold their coordinates.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        tolerance(self.centre, self.radius)
+    }
+
+    /// The triangles as they are used: cleaned, in file order.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// What was left out of the mesh given, one entry an object that lost something.
+    #[must_use]
+    pub fn cleaned(&self) -> &[Cleaned] {
+        &self.cleaned
+    }
+
+    /// Which surfaces hide which, and over what area; exact duplicates included unless object and surface are the same.
+    #[must_use]
+    pub fn coincidences(&self) -> &[Coincidence] {
+        &self.coincidences
+    }
+
+    /// Number of triangles.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.mesh.len()
+    }
+
+    /// Whether there is no surface at all.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.mesh.is_empty()
+    }
+
+    /// A triangle; as in all that follows, its index must be below [`len`](Self::len).
+    #[must_use]
+    pub fn triangle(&self, triangle: u32) -> Triangle {
+        self.mesh.triangle(triangle as usize)
+    }
+
+    /// Unit normal of a triangle by the order of its vertices.
+    #[must_use]
+    pub fn normal(&self, triangle: u32) -> DVec3 {
+        self.triangle(triangle).normal()
+    }
+
+    /// Surface (material) index of a triangle.
+    #[must_use]
+    pub fn surface(&self, triangle: u32) -> u32 {
+        self.mesh.surfaces[triangle as usize]
+    }
+
+    /// Object index of a triangle.
+    #[must_use]
+    pub fn object(&self, triangle: u32) -> u32 {
+        self.mesh.objects[triangle as usize]
+    }
+
+    /// Centre of the bounding sphere, in m.
+    #[must_use]
+    pub fn centre(&self) -> DVec3 {
+        self.centre
+    }
+
+    /// Radius of the bounding sphere, in m.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Whether a point (in m) of a triangle is there: false where a later triangle covers it.
+    #[must_use]
+    pub fn exposed(&self, triangle: u32, point: DVec3) -> bool {
+        !self
+            .coverings
+            .over(triangle)
+            .any(|covering| self.triangle(covering).covers(point))
+    }
+
+    /// Area of a triangle that no later one covers, in m².
+    #[must_use]
+    pub fn exposed_area(&self, triangle: u32) -> f64 {
+        self.coverings.exposed_area(&self.mesh, triangle)
+    }
+}
+
+/// See [`Surfaces::tolerance`].
+pub(crate) fn tolerance(centre: DVec3, radius: f64) -> f64 {
+    8.0 * f64::from(f32::EPSILON) * (centre.length() + radius)
+}
+
+#[cfg(test)]
+mod tests;

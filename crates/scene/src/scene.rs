@@ -1,0 +1,212 @@
+//! The checked model of a scene: everything an estimator has to know.
+
+use crate::appearance::NO_MIRROR;
+use crate::assembly::{Assembly, areas};
+use crate::error::Error;
+use crate::file::SceneFile;
+use crate::import::Import;
+use crate::need::{Need, word};
+use crate::overrides::Override;
+use crate::placing::{measured, place};
+use crate::{Material, Origin, Sensor, Settings, Source, Unit, defects, enclosed};
+use malus_geometry::Surfaces;
+use malus_optics::Representation;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// A scene, checked: nothing later needs to look at a file again.
+pub struct Scene {
+    /// Name for titles and results.
+    pub name: String,
+    /// Unit of flux.
+    pub unit: Unit,
+    /// Where surfaces are; `surfaces.surface(triangle)` is an index of `materials`.
+    pub surfaces: Surfaces,
+    /// Materials by surface index.
+    pub materials: Vec<Material>,
+    /// Sources without geometry: those of the scene file, then lamps of mesh files.
+    pub sources: Vec<Source>,
+    /// Sensors, in the order of the scene file, then those found in mesh files.
+    pub sensors: Vec<Sensor>,
+    /// How the scene is to be computed.
+    pub settings: Settings,
+    /// Number of Stokes components that the scene needs, and what forces it.
+    pub need: Need,
+    /// Names of objects, by the index that `surfaces.object(triangle)` gives.
+    pub objects: Vec<String>,
+    /// What a careful user would want to know, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// Loads the scene file at `path`, with every file it names; `overrides` replace its own values, the later ones last.
+    ///
+    /// # Errors
+    /// The first things found wrong, each with its place, what was found and what is allowed.
+    pub fn load(path: &Path, overrides: &[Override]) -> Result<Self, Error> {
+        let mut file = SceneFile::read(path, overrides)?;
+        let mut warnings = std::mem::take(&mut file.warnings);
+        let imports = each(&file.meshes, Import::load)?;
+        for import in &imports {
+            warnings.extend(import.warnings());
+        }
+
+        let measured = measured(&file.sensors, &imports)?;
+        let mut assembly = Assembly::new(&imports, &file, &measured.objects())?;
+        let names = assembly.material_names(&imports);
+        let meshes = !imports.is_empty();
+        file.library.check_used(&names, meshes, &mut warnings)?;
+
+        let mesh = std::mem::take(&mut assembly.mesh);
+        let surfaces = Surfaces::new(mesh.clone()).map_err(|error| Error::Geometry {
+            path: path.display().to_string(),
+            reason: Box::new(error),
+        })?;
+        // Of the mesh as given: what Surfaces leaves out is a defect too.
+        let flaws = malus_geometry::defects::of(&mesh);
+        let (materials, doubts) = assembly.materials(&imports, &file.library, &surfaces)?;
+        warnings.extend(doubts);
+        warnings.extend(no_mirrors(&materials));
+
+        let mut sources = file.sources;
+        sources.extend(imports.iter().flat_map(|import| import.lamps.clone()));
+        sources.retain(Source::emits);
+        let exposed = areas(&surfaces, materials.len());
+        let shines =
+            |(material, area): (&Material, &f64)| material.emission.is_some() && *area > 0.0;
+        if sources.is_empty() && !materials.iter().zip(&exposed).any(shines) {
+            let path = path.display().to_string();
+            return Err(Error::NoEmitter { path });
+        }
+        warnings.extend(mixed_units(&imports, &materials));
+
+        let mut sensors = place(file.sensors, &imports, &measured, &mut warnings)?;
+        if sensors.is_empty() {
+            let path = path.display().to_string();
+            return Err(Error::NoSensor { path });
+        }
+        enclosed::mark(&mut sensors, &surfaces, &materials, &sources);
+
+        warnings.extend(defects::warnings(&flaws, &assembly.objects, &sensors));
+        let labels: Vec<String> = materials.iter().map(|it| it.name.clone()).collect();
+        warnings.extend(defects::coincidences(&surfaces, &assembly.objects, &labels));
+        warnings.extend(odd_extent(&surfaces));
+        let need = Need::of(file.settings.model, &materials, &sources);
+        warnings.extend(too_little(&file.settings, &need));
+        Ok(Self {
+            name: file.name,
+            unit: file.unit,
+            surfaces,
+            materials,
+            sources,
+            sensors,
+            settings: file.settings,
+            need,
+            objects: assembly.objects,
+            warnings,
+        })
+    }
+
+    /// Representation to run with: the one asked for, else the one needed.
+    #[must_use]
+    pub fn representation(&self) -> Representation {
+        let asked = self.settings.representation;
+        asked.unwrap_or(self.need.representation)
+    }
+}
+
+/// Applies `read` to every item; all errors are told at once.
+fn each<I, T>(items: &[I], read: impl Fn(&I) -> Result<T, Error>) -> Result<Vec<T>, Error> {
+    let mut good = Vec::with_capacity(items.len());
+    let mut errors = Vec::new();
+    for item in items {
+        match read(item) {
+            Ok(value) => good.push(value),
+            Err(error) => errors.push(error),
+        }
+    }
+    Error::all(errors).map(|()| good)
+}
+
+/// One sentence for all materials of OBJ files whose fields say nothing of mirror-like reflection.
+fn no_mirrors(materials: &[Material]) -> Option<String> {
+    let unsaid = Origin::Field(NO_MIRROR.to_owned());
+    let has = |material: &&Material| {
+        let mut values = material.values.iter();
+        values.any(|value| value.key == "a" && value.origin == unsaid)
+    };
+    let names: BTreeSet<&str> = materials
+        .iter()
+        .filter(has)
+        .map(|it| it.name.as_str())
+        .collect();
+    let names: Vec<String> = names.into_iter().map(str::to_owned).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{} materials have a = 0, because their MTL fields say nothing of mirror-like reflection (illum < 3): {}; give a in the scene file",
+            names.len(),
+            defects::listed(&names)
+        )
+    })
+}
+
+/// Blender writes lamps as W × 683/4π cd and emission strengths as they stand: within one file they do not agree.
+fn mixed_units(imports: &[Import], materials: &[Material]) -> Option<String> {
+    let from_fields = |material: &&Material| {
+        let mut values = material.values.iter();
+        let exitance = values.find(|value| value.key == "exitance");
+        material.emission.is_some()
+            && exitance.is_some_and(|value| matches!(value.origin, Origin::Field(_)))
+    };
+    let glowing = materials.iter().find(from_fields)?;
+    let import = imports.iter().find(|import| {
+        let mut names = import.model.materials.iter();
+        !import.lamps.is_empty() && names.any(|material| material.name == glowing.name)
+    })?;
+    Some(format!(
+        "{}: material {:?} emits by its file's strength, and there are lamps ({}) beside it; Blender writes lamps times 683 and strengths as they stand, so one of the two is wrong by 683: give malus_emit_lm or malus_exitance",
+        import.file,
+        glowing.name,
+        defects::listed(
+            &import
+                .lamps
+                .iter()
+                .map(|lamp| lamp.name.clone())
+                .collect::<Vec<_>>()
+        )
+    ))
+}
+
+/// A room that is measured in millimetres or feet.
+fn odd_extent(surfaces: &Surfaces) -> Option<String> {
+    let extent = extent(surfaces)?;
+    let largest = extent.max_element();
+    (!(1.0..=100.0).contains(&largest)).then(|| {
+        let [x, y, z] = extent.to_array();
+        format!(
+            "the geometry measures {x:.4} × {y:.4} × {z:.4} m, which is no room; a mesh in other units needs scale = (its unit in metres)"
+        )
+    })
+}
+
+/// Size of the box around all surfaces, in m.
+fn extent(surfaces: &Surfaces) -> Option<glam::DVec3> {
+    let bounds = crate::check::bounds(surfaces)?;
+    Some(bounds.1 - bounds.0)
+}
+
+/// A representation asked for that leaves out what the scene has.
+fn too_little(settings: &Settings, need: &Need) -> Option<String> {
+    let asked = settings.representation?;
+    (asked < need.representation).then(|| {
+        format!(
+            "representation {:?} leaves something out: the scene needs {:?}, because {}",
+            word(asked),
+            word(need.representation),
+            need.reason
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests;
