@@ -10,7 +10,13 @@ const DIGITS: f64 = 5e-6;
 fn case(id: &str) -> Value {
     let text = std::fs::read_to_string(repository("tests/data/cie171.json")).unwrap();
     let table: Value = serde_json::from_str(&text).unwrap();
-    table["cases"].as_array().unwrap().iter().find(|case| case["id"] == id).unwrap()["expected"].clone()
+    table["cases"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|case| case["id"] == id)
+        .unwrap()["expected"]
+        .clone()
 }
 
 /// The points of a case as sensors of their own, with the values expected there.
@@ -30,7 +36,10 @@ fn points(id: &str) -> (String, Vec<f64>) {
 
 fn assert_points(id: &str, scene: &str, ceiling: f64) {
     let (sensors, expected) = points(id);
-    for (reading, exact) in measured(&format!("{scene}\n{sensors}")).iter().zip(expected) {
+    for (reading, exact) in measured(&format!("{scene}\n{sensors}"))
+        .iter()
+        .zip(expected)
+    {
         let (value, error) = s0(reading);
         if exact.abs() == 0.0 {
             assert!(value.abs() == 0.0, "{id}: {value} in full shadow");
@@ -49,7 +58,8 @@ fn case_5_2_point_sources() {
                       distribution = 'cosine'\ndirection = [0, 0, -1]";
     assert_points("5.2-lambertian", lambertian, 0.0);
     let intensity = 10_000.0 / (4.0 * std::f64::consts::PI);
-    let isotropic = format!("[[source]]\nkind = 'point'\nposition = [0, 0, 3]\nintensity = {intensity}");
+    let isotropic =
+        format!("[[source]]\nkind = 'point'\nposition = [0, 0, 3]\nintensity = {intensity}");
     assert_points("5.2-isotropic", &isotropic, 0.0);
 }
 
@@ -160,13 +170,22 @@ fn case_5_4_flux_is_conserved() {
     let (readings, weights) = lit_box([4.0, 4.0, 3.0], 0.0, 64);
     let expected = case("5.4-electric");
     let flux = |face: &str| -> f64 {
-        let all = readings.iter().zip(&weights).filter(|(_, (name, _))| *name == face);
-        all.map(|(reading, (_, weight))| reading.stokes[0] * weight).sum()
+        let all = readings
+            .iter()
+            .zip(&weights)
+            .filter(|(_, (name, _))| *name == face);
+        all.map(|(reading, (_, weight))| reading.stokes[0] * weight)
+            .sum()
     };
     let mut total = 0.0;
     for face in ["floor", "ceiling", "x0", "x1", "y0", "y1"] {
         // Sixteen nodes a side integrate cos θ/r² over a face beyond the six digits of the table.
-        assert_exact(face, flux(face), expected[face]["flux"].as_f64().unwrap(), DIGITS);
+        assert_exact(
+            face,
+            flux(face),
+            expected[face]["flux"].as_f64().unwrap(),
+            DIGITS,
+        );
         total += flux(face);
     }
     assert_exact("total", total, 10_000.0, DIGITS);

@@ -50,7 +50,12 @@ fn bits(readings: &[Reading]) -> Vec<u64> {
         .iter()
         .flat_map(|r| {
             let pairs = [r.scalar, r.diffuse].into_iter().flatten().flat_map(|p| {
-                [p.value, p.standard_error, p.difference, p.difference_standard_error]
+                [
+                    p.value,
+                    p.standard_error,
+                    p.difference,
+                    p.difference_standard_error,
+                ]
             });
             r.stokes
                 .into_iter()
@@ -64,7 +69,10 @@ fn bits(readings: &[Reading]) -> Vec<u64> {
 }
 
 fn on_threads(threads: usize, scene: &Scene) -> Vec<u64> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
     bits(&pool.install(|| readings(&evaluate(scene))))
 }
 
@@ -85,7 +93,11 @@ fn an_interrupted_run_has_the_bits_of_one_asked_for_so_many_samples() {
         let mut asked = 0;
         let results = run(&scene, &scene.settings, &mut |_| {
             asked += 1;
-            if asked == 5 { Answer::Interrupt } else { Answer::Continue }
+            if asked == 5 {
+                Answer::Interrupt
+            } else {
+                Answer::Continue
+            }
         });
         assert_eq!(results.stop, Stop::Interrupted);
         assert!(!results.complete);

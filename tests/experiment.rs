@@ -19,7 +19,11 @@ pub fn evaluate(scene: &Scene) -> Results {
 
 /// All readings of a run, group after group.
 pub fn readings(results: &Results) -> Vec<Reading> {
-    results.groups.iter().flat_map(|group| group.readings.iter().copied()).collect()
+    results
+        .groups
+        .iter()
+        .flat_map(|group| group.readings.iter().copied())
+        .collect()
 }
 
 /// Readings of a scene given as text.
@@ -32,9 +36,15 @@ pub fn measured(toml: &str) -> Vec<Reading> {
 #[track_caller]
 pub fn assert_estimate(what: &str, (value, standard_error): (f64, f64), exact: f64, ceiling: f64) {
     let z = (value - exact) / standard_error;
-    assert!(z.abs() < 4.5, "{what}: {value} ± {standard_error}, exactly {exact}: z = {z:.2}");
+    assert!(
+        z.abs() < 4.5,
+        "{what}: {value} ± {standard_error}, exactly {exact}: z = {z:.2}"
+    );
     let relative = standard_error / exact.abs();
-    assert!(relative <= ceiling, "{what}: relative standard error {relative:.2e} above {ceiling:.1e}");
+    assert!(
+        relative <= ceiling,
+        "{what}: relative standard error {relative:.2e} above {ceiling:.1e}"
+    );
 }
 
 /// Asserts a value that no chance enters.

@@ -62,7 +62,10 @@ fn a_furnace_is_even_everywhere() {
 #[test]
 fn a_furnace_is_even_for_walks_from_the_walls_too() {
     // Local estimates are for sensors away from walls: their variance grows without bound there.
-    let toml = room(0.5, BOX, "local", 262_144).replace("[0.01, 0.5, 0.5], [0.001, 0.001, 0.001], [0.99, 0.3, 0.6]", "[0.3, 0.5, 0.6]");
+    let toml = room(0.5, BOX, "local", 262_144).replace(
+        "[0.01, 0.5, 0.5], [0.001, 0.001, 0.001], [0.99, 0.3, 0.6]",
+        "[0.3, 0.5, 0.6]",
+    );
     for reading in measured(&toml) {
         assert_estimate("local", s0(&reading), 4.0, 5e-3);
     }
@@ -70,7 +73,8 @@ fn a_furnace_is_even_for_walks_from_the_walls_too() {
 
 /// Sensors flush on `count` facets of the unit sphere, facing inwards.
 fn facets(subdivisions: u32, count: usize) -> String {
-    let (positions, triangles) = malus_geometry::shape::sphere(DVec3::ZERO, 1.0, true, subdivisions);
+    let (positions, triangles) =
+        malus_geometry::shape::sphere(DVec3::ZERO, 1.0, true, subdivisions);
     let stride = triangles.len() / count;
     (0..count)
         .map(|i| {
@@ -116,15 +120,22 @@ fn a_glossy_sphere_has_its_exact_answer_with_and_without_polarisation() {
     let readings = measured(&toml);
     // Sensors are walked from independently, so their errors add in squares.
     let mean = |of: &dyn Fn(&Reading) -> (f64, f64)| {
-        let (sum, squares) = readings.iter().map(of).fold((0.0, 0.0), |(sum, squares), (value, error)| {
-            (sum + value, squares + error * error)
-        });
+        let (sum, squares) = readings
+            .iter()
+            .map(of)
+            .fold((0.0, 0.0), |(sum, squares), (value, error)| {
+                (sum + value, squares + error * error)
+            });
         (sum / count as f64, squares.sqrt() / count as f64)
     };
     assert_estimate("polarised", mean(&s0), 1.357_007_9, 6e-4);
     let scalar = mean(&|r| r.scalar.map(|s| (s.value, s.standard_error)).unwrap());
     assert_estimate("scalar", scalar, 1.352_380_4, 6e-4);
-    let difference = mean(&|r| r.scalar.map(|s| (s.difference, s.difference_standard_error)).unwrap());
+    let difference = mean(&|r| {
+        r.scalar
+            .map(|s| (s.difference, s.difference_standard_error))
+            .unwrap()
+    });
     assert_estimate("difference", difference, 1.357_007_9 - 1.352_380_4, 0.02);
     // Without its mirror-like part the sphere is an ordinary furnace.
     let diffuse = mean(&|r| r.diffuse.map(|d| (d.value, d.standard_error)).unwrap());

@@ -18,7 +18,10 @@ fn over(a: Complex, b: Complex) -> Complex {
 
 fn root(a: Complex) -> Complex {
     let modulus = a.0.hypot(a.1);
-    let (re, im) = (((modulus + a.0) / 2.0).sqrt(), ((modulus - a.0) / 2.0).sqrt());
+    let (re, im) = (
+        ((modulus + a.0) / 2.0).sqrt(),
+        ((modulus - a.0) / 2.0).sqrt(),
+    );
     (re, if a.1 < 0.0 { -im } else { im })
 }
 
@@ -28,8 +31,14 @@ fn amplitudes(index: Complex, cos: f64) -> (Complex, Complex) {
     let square = times(ratio, ratio);
     let inside = root((1.0 - square.0, -square.1));
     let (n_inside, n_cos) = (times(index, inside), times(index, (cos, 0.0)));
-    let rs = over((cos - n_inside.0, -n_inside.1), (cos + n_inside.0, n_inside.1));
-    let rp = over((n_cos.0 - inside.0, n_cos.1 - inside.1), (n_cos.0 + inside.0, n_cos.1 + inside.1));
+    let rs = over(
+        (cos - n_inside.0, -n_inside.1),
+        (cos + n_inside.0, n_inside.1),
+    );
+    let rp = over(
+        (n_cos.0 - inside.0, n_cos.1 - inside.1),
+        (n_cos.0 + inside.0, n_cos.1 + inside.1),
+    );
     (rs, rp)
 }
 
@@ -47,7 +56,11 @@ fn fields([_, q, u, v]: [f64; 4]) -> Vec<(f64, Complex, Complex)> {
     let x = ((1.0 + q) / 2.0).sqrt();
     let rest = (1.0 - degree) / 2.0;
     // S2 + iS3 = 2 x y*.
-    vec![(degree, (x, 0.0), (u / (2.0 * x), -v / (2.0 * x))), (rest, (1.0, 0.0), (0.0, 0.0)), (rest, (0.0, 0.0), (1.0, 0.0))]
+    vec![
+        (degree, (x, 0.0), (u / (2.0 * x), -v / (2.0 * x))),
+        (rest, (1.0, 0.0), (0.0, 0.0)),
+        (rest, (0.0, 0.0), (1.0, 0.0)),
+    ]
 }
 
 fn axis_across(direction: DVec3, axis: DVec3) -> DVec3 {
@@ -83,15 +96,25 @@ fn by_fields(index: Complex, fixed: bool) -> [f64; 4] {
             let (p_in, p_out) = (down.cross(s), onward.cross(s));
             let lamp_x = axis_across(down, LAMP_AXIS);
             let lamp_y = down.cross(lamp_x);
-            let x = if fixed { axis_across(onward, FIXED_AXIS) } else { onward.cross(SENSOR_NORMAL).normalize() };
+            let x = if fixed {
+                axis_across(onward, FIXED_AXIS)
+            } else {
+                onward.cross(SENSOR_NORMAL).normalize()
+            };
             let y = onward.cross(x);
             for (share, e_x, e_y) in fields(STATE) {
                 let along = |axis: DVec3| {
-                    (e_x.0 * lamp_x.dot(axis) + e_y.0 * lamp_y.dot(axis), e_x.1 * lamp_x.dot(axis) + e_y.1 * lamp_y.dot(axis))
+                    (
+                        e_x.0 * lamp_x.dot(axis) + e_y.0 * lamp_y.dot(axis),
+                        e_x.1 * lamp_x.dot(axis) + e_y.1 * lamp_y.dot(axis),
+                    )
                 };
                 let (e_s, e_p) = (times(rs, along(s)), times(rp, along(p_in)));
                 let out = |axis: DVec3| {
-                    (e_s.0 * s.dot(axis) + e_p.0 * p_out.dot(axis), e_s.1 * s.dot(axis) + e_p.1 * p_out.dot(axis))
+                    (
+                        e_s.0 * s.dot(axis) + e_p.0 * p_out.dot(axis),
+                        e_s.1 * s.dot(axis) + e_p.1 * p_out.dot(axis),
+                    )
                 };
                 for (total, component) in sum.iter_mut().zip(stokes(out(x), out(y))) {
                     *total += share * irradiance * component;
@@ -149,8 +172,17 @@ fn a_polarised_lamp_in_a_mirror_is_what_its_fields_say() {
             for i in 0..4 {
                 let what = format!("n = {n}, k = {k}, {frame}, S{i}");
                 let z = (reading.stokes[i] - exact[i]) / reading.standard_error[i];
-                assert!(z.abs() < 4.5, "{what}: {} against {}: z = {z:.2}", reading.stokes[i], exact[i]);
-                assert!(reading.standard_error[i] < 0.015 * exact[0], "{what}: {}", reading.standard_error[i]);
+                assert!(
+                    z.abs() < 4.5,
+                    "{what}: {} against {}: z = {z:.2}",
+                    reading.stokes[i],
+                    exact[i]
+                );
+                assert!(
+                    reading.standard_error[i] < 0.015 * exact[0],
+                    "{what}: {}",
+                    reading.standard_error[i]
+                );
             }
         }
     }
@@ -176,7 +208,12 @@ fn a_beam_along_the_normal_arrives_in_the_state_it_left() {
     for (component, share) in reading.stokes.into_iter().zip([1.0, 0.5, -0.25, 0.125]) {
         assert_exact("component", component, 3.0 * share, 1e-15);
     }
-    assert!(reading.standard_error.iter().all(|&error| error.abs() == 0.0));
+    assert!(
+        reading
+            .standard_error
+            .iter()
+            .all(|&error| error.abs() == 0.0)
+    );
     assert_exact("dolp", reading.dolp, 0.3125f64.sqrt(), 1e-15);
 }
 
@@ -217,8 +254,18 @@ fn a_polarised_lamp_overhead_shows_in_the_fixed_frame() {
         exact[1] += irradiance * (y * y - x * x * cos2) / (y * y + x * x * cos2);
     }
     let incidence = overhead("incidence");
-    assert_estimate("S0", (incidence.stokes[0], incidence.standard_error[0]), exact[0], 2e-3);
-    assert_estimate("S1", (incidence.stokes[1], incidence.standard_error[1]), exact[1], 2e-2);
+    assert_estimate(
+        "S0",
+        (incidence.stokes[0], incidence.standard_error[0]),
+        exact[0],
+        2e-3,
+    );
+    assert_estimate(
+        "S1",
+        (incidence.stokes[1], incidence.standard_error[1]),
+        exact[1],
+        2e-2,
+    );
     assert!(exact[1] < 0.1 * exact[0]);
     let fixed = overhead("fixed");
     // The same axis made perpendicular to the same beams at either end.

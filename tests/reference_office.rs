@@ -9,7 +9,10 @@ fn reference() -> Vec<(f64, f64)> {
     let text = std::fs::read_to_string(repository("tests/data/office_ref.txt")).unwrap();
     text.lines()
         .map(|line| {
-            let columns: Vec<f64> = line.split_whitespace().map(|word| word.parse().unwrap()).collect();
+            let columns: Vec<f64> = line
+                .split_whitespace()
+                .map(|word| word.parse().unwrap())
+                .collect();
             (columns[5], columns[6])
         })
         .collect()
@@ -33,7 +36,11 @@ fn free_sensors_agree_and_those_inside_furniture_are_marked() {
         }
         let error = reading.standard_error[0];
         let z = (reading.stokes[0] - exact) / error.hypot(share * exact);
-        assert!(z.abs() < 4.5, "point {point}: {} against {exact}: z = {z:.2}", reading.stokes[0]);
+        assert!(
+            z.abs() < 4.5,
+            "point {point}: {} against {exact}: z = {z:.2}",
+            reading.stokes[0]
+        );
         assert!(error < 0.01 * exact, "point {point}: {error} of {exact}");
     }
     assert_eq!(enclosed, 9);

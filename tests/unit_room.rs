@@ -37,7 +37,8 @@ const NINE: &str = "line = { from = [0.1, 0.5, 0], to = [0.9, 0.5, 0], count = 9
 
 /// Illuminance at x = 0.1 … 0.9, y = 0.5 on the floor for a = 0, known to 4e-5 from a converged radiosity solution.
 const DIFFUSE: [f64; 9] = [
-    3.09795e-3, 3.37907e-3, 3.60136e-3, 3.74677e-3, 3.79783e-3, 3.74677e-3, 3.60136e-3, 3.37907e-3, 3.09795e-3,
+    3.09795e-3, 3.37907e-3, 3.60136e-3, 3.74677e-3, 3.79783e-3, 3.74677e-3, 3.60136e-3, 3.37907e-3,
+    3.09795e-3,
 ];
 
 /// The reference's own uncertainty, as a share.
@@ -66,7 +67,8 @@ fn diffuse_room_agrees_by_gather() {
 #[test]
 fn black_room_has_the_direct_light_of_a_disc() {
     let direct = [1.85556e-3, 2.10057e-3, 2.30648e-3, 2.44487e-3, 2.49377e-3];
-    let toml = room(0.0, NINE, "samples = 65536\nestimator = 'gather'").replace("rho = 0.5", "rho = 0");
+    let toml =
+        room(0.0, NINE, "samples = 65536\nestimator = 'gather'").replace("rho = 0.5", "rho = 0");
     for (reading, exact) in measured(&toml).iter().zip(direct) {
         // The table is rounded at the sixth digit, the disc is a polygon of 128 sides and of the disc's area.
         let (value, error) = s0(reading);
@@ -76,7 +78,12 @@ fn black_room_has_the_direct_light_of_a_disc() {
 
 /// a = 1, unit luminance, by images alone: point, scalar Fresnel, Stokes, relative difference.
 const MIRRORED: [(&str, f64, f64, f64); 3] = [
-    ("points = [[0.25, 0.25, 0]]", 0.006_728, 0.006_715, -1.966e-3),
+    (
+        "points = [[0.25, 0.25, 0]]",
+        0.006_728,
+        0.006_715,
+        -1.966e-3,
+    ),
     ("points = [[0.5, 0.25, 0]]", 0.007_421, 0.007_411, -1.376e-3),
     ("points = [[0.5, 0.5, 0]]", 0.008_250, 0.008_242, -9.71e-4),
 ];
@@ -89,10 +96,18 @@ fn mirrored_room_agrees_with_its_images() {
         // Four digits are given: half of the last is the table's own uncertainty.
         let table = 0.5e-6 / 3f64.sqrt();
         let (value, error) = s0(&reading);
-        assert_estimate("Stokes", (value * PI, (error * PI).hypot(table)), stokes, 2e-3);
+        assert_estimate(
+            "Stokes",
+            (value * PI, (error * PI).hypot(table)),
+            stokes,
+            2e-3,
+        );
         let error = (paired.standard_error * PI).hypot(table);
         assert_estimate("scalar", (paired.value * PI, error), scalar, 2e-3);
-        let relative = (paired.difference / paired.value, paired.difference_standard_error / paired.value);
+        let relative = (
+            paired.difference / paired.value,
+            paired.difference_standard_error / paired.value,
+        );
         assert_estimate("difference", relative, difference, 0.1);
     }
 }

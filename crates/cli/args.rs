@@ -15,9 +15,9 @@ pub struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  malus check office.toml                         what is in the scene, and what is wrong with it
+  malus check office.toml                         what is in it, and what is wrong
   malus run office.toml                           compute it; results go to results/office
-  malus run office.toml --relative-error 0.005    the same, to half a per cent at every sensor
+  malus run office.toml --relative-error 0.005    the same, to 0.5 % everywhere
 
 Exit status: 0 done, 1 the run failed, 2 bad arguments or a bad scene, 130 interrupted.";
 
@@ -27,11 +27,11 @@ Examples:
   malus run office.toml --seconds 60 --threads 4
   malus run office.toml --samples 65536 --seed 7     repeats to the byte on any machine
 
-Results: sensors.csv (one row a sensor point), grids.csv (one row a sensor), a plan <sensor>.svg of each grid,
-and summary.json. A stop by error or by time prints the --samples that repeats it.
+Results: sensors.csv (one row a sensor point), grids.csv (one row a sensor), a plan <sensor>.svg of each \
+grid, and summary.json. A stop by error or by time prints the --samples that repeats it.
 
-Exit status: 0 done, 1 the run failed, 2 bad arguments or a bad scene, 130 interrupted (Ctrl-C once: what is there
-is written and marked incomplete; twice: at once, without results).";
+Exit status: 0 done, 1 the run failed, 2 bad arguments or a bad scene, 130 interrupted (Ctrl-C \
+once: what is there is written and marked incomplete; twice: at once, without results).";
 
 const CHECK_EXAMPLES: &str = "\
 Examples:

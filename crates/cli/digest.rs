@@ -41,8 +41,7 @@ pub struct Free {
 pub struct Difference {
     /// Mean difference / mean of the other model.
     pub share: f64,
-    /// Its paired standard error, at most: the mean of the points' errors, reached where the points' noise is common to
-    /// all, as it nearly is where they share their walks.
+    /// Its paired standard error, as a share too.
     pub standard_error: f64,
 }
 
@@ -77,22 +76,18 @@ impl Free {
             u0: ratio(min, mean),
             dolp_mean: average(free.iter().map(|reading| reading.dolp)),
             relative_error_max: free.iter().map(relative_error).fold(0.0, f64::max),
-            scalar: Difference::of(free, |reading| reading.scalar),
-            diffuse: Difference::of(free, |reading| reading.diffuse),
+            scalar: group.scalar.map(Difference::of),
+            diffuse: group.diffuse.map(Difference::of),
         }
     }
 }
 
 impl Difference {
-    fn of(free: &[&Reading], other: impl Fn(&Reading) -> Option<Paired>) -> Option<Self> {
-        let pairs: Option<Vec<Paired>> = free.iter().map(|reading| other(reading)).collect();
-        let pairs = pairs?;
-        let mean = |of: fn(&Paired) -> f64| average(pairs.iter().map(of));
-        let value = mean(|pair| pair.value);
-        Some(Self {
-            share: ratio(mean(|pair| pair.difference), value),
-            standard_error: ratio(mean(|pair| pair.difference_standard_error), value),
-        })
+    fn of(pair: Paired) -> Self {
+        Self {
+            share: ratio(pair.difference, pair.value),
+            standard_error: ratio(pair.difference_standard_error, pair.value),
+        }
     }
 }
 
@@ -142,6 +137,8 @@ pub mod tests {
             readings: vec![reading(2.0), enclosed(), reading(4.0)],
             mean: 3.0,
             mean_standard_error: 0.02,
+            scalar: None,
+            diffuse: None,
         };
         let digest = Digest::of(&group);
         assert_eq!((digest.count, digest.enclosed), (3, 1));
@@ -158,6 +155,8 @@ pub mod tests {
             readings: vec![reading(0.0)],
             mean: 0.0,
             mean_standard_error: 0.0,
+            scalar: None,
+            diffuse: None,
         };
         let free = Digest::of(&group).free.expect("one free point");
         assert_eq!(
@@ -168,17 +167,18 @@ pub mod tests {
 
     #[test]
     fn differences_are_shares_of_the_other_model() {
-        let mut point = reading(0.97);
-        point.scalar = Some(Paired {
+        let scalar = Paired {
             value: 1.0,
             standard_error: 0.01,
             difference: -0.03,
             difference_standard_error: 0.002,
-        });
+        };
         let group = Group {
-            readings: vec![point, point],
+            readings: vec![reading(0.97)],
             mean: 0.97,
             mean_standard_error: 0.0,
+            scalar: Some(scalar),
+            diffuse: None,
         };
         let scalar = Digest::of(&group).free.and_then(|free| free.scalar);
         let scalar = scalar.expect("compared");
@@ -192,6 +192,8 @@ pub mod tests {
             readings: vec![enclosed()],
             mean: 0.0,
             mean_standard_error: 0.0,
+            scalar: None,
+            diffuse: None,
         };
         assert_eq!(Digest::of(&group).free, None);
     }

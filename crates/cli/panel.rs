@@ -191,12 +191,18 @@ impl Map {
             );
         }
         let mut lines = String::new();
-        for level in self.scale.levels(self.noise) {
+        let levels = self.scale.levels(self.noise);
+        for level in &levels {
             let y = place(self.scale.share(level.value));
             lines += &line([x, y], [x + BAR, y]);
         }
+        let marks = if levels.len() < 2 {
+            self.scale.ticks()
+        } else {
+            levels
+        };
         let mut numbers = String::new();
-        for tick in self.scale.ticks() {
+        for tick in marks {
             let y = place(self.scale.share(tick.value));
             lines += &line([x + BAR, y], [x + BAR + 4.0, y]);
             numbers += &text([x + BAR + 7.0, y + 4.0], SMALL, Anchor::Start, &tick.text);

@@ -74,7 +74,7 @@ impl Reporter {
 fn bar() -> ProgressBar {
     let bar = ProgressBar::new(STEPS);
     if let Ok(style) =
-        ProgressStyle::with_template("{elapsed:>4} [{bar:30}] {percent:>3} %  {wide_msg}")
+        ProgressStyle::with_template("{elapsed:>4} [{bar:20}] {percent:>3} %  {wide_msg}")
     {
         bar.set_style(style.progress_chars("=> "));
     }
@@ -83,7 +83,9 @@ fn bar() -> ProgressBar {
     bar
 }
 
-/// Where the run stands, in words.
+/// Where the run stands, in words; the most wanted first, as a narrow terminal cuts off the rest.
+///
+/// The error is the largest relative standard error.
 fn state(progress: &Progress, left: Option<f64>) -> String {
     let percent = |share: f64| format!("{} %", significant(100.0 * share, 2));
     let mut parts = Vec::new();
@@ -91,15 +93,15 @@ fn state(progress: &Progress, left: Option<f64>) -> String {
         let goal = progress
             .relative_error_goal
             .map_or(String::new(), |goal| format!(" (goal {})", percent(goal)));
-        parts.push(format!("relative error {}{goal}", percent(error)));
+        parts.push(format!("error {}{goal}", percent(error)));
+    }
+    if let Some(left) = left {
+        parts.push(format!("about {} left", duration(left)));
     }
     parts.push(match progress.samples_limit {
         Some(limit) => format!("{} of {limit} samples", progress.samples),
         None => format!("{} samples", progress.samples),
     });
-    if let Some(left) = left {
-        parts.push(format!("about {} left", duration(left)));
-    }
     parts.join(", ")
 }
 
@@ -119,7 +121,7 @@ mod tests {
         };
         assert_eq!(
             state(&progress, Some(11.2)),
-            "relative error 1.8 % (goal 1.0 %), 65536 samples, about 12 s left"
+            "error 1.8 % (goal 1.0 %), about 12 s left, 65536 samples"
         );
     }
 

@@ -37,10 +37,6 @@ pub fn run(command: &args::Run) -> Result<End, Failure> {
     warn(&scene.warnings);
     let (results, seconds) = compute(command, &scene, &settings, threads)?;
     warn(&results.warnings);
-    if results.samples == 0 {
-        warn(&["interrupted before there was anything to write".to_owned()]);
-        return Ok(End::Interrupted);
-    }
     let circumstances = Circumstances {
         seconds,
         threads,

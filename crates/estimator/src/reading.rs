@@ -74,21 +74,22 @@ impl<'a> Readings<'a> {
     fn group(&self, tally: &Tally, range: std::ops::Range<usize>) -> Group {
         let free: Vec<usize> = range
             .clone()
-            .filter(|&s| !self.receivers[s].enclosed)
+            .filter(|&sensor| !self.receivers[sensor].enclosed)
             .collect();
         let count = free.len().max(1) as f64;
-        let count_channels = self.channels.count;
-        let mean = tally.estimate(|means| {
-            free.iter()
-                .map(|s| means.at(s * count_channels))
-                .sum::<f64>()
-                / count
-        });
+        let mean = |means: &Means, channel: usize| {
+            let at = |&sensor: &usize| means.at(sensor * self.channels.count + channel);
+            free.iter().map(at).sum::<f64>() / count
+        };
         let exact = free.iter().map(|&s| self.exact[s][0]).sum::<f64>() / count;
+        let main = tally.estimate(|means| mean(means, 0));
+        let paired = |channel| Paired::new(tally, exact, channel, &mean);
         Group {
             readings: range.map(|sensor| self.reading(tally, sensor)).collect(),
-            mean: mean.mean + exact,
-            mean_standard_error: mean.standard_error,
+            mean: main.mean + exact,
+            mean_standard_error: main.standard_error,
+            scalar: self.channels.scalar.map(paired),
+            diffuse: self.channels.diffuse.map(paired),
         }
     }
 
@@ -111,7 +112,8 @@ impl<'a> Readings<'a> {
                 standard_error: 0.0,
             }
         };
-        let paired = |channel| self.paired(tally, sensor, first, channel);
+        let at = |means: &Means, channel: usize| means.at(first + channel);
+        let paired = |channel| Paired::new(tally, self.exact[sensor][0], channel, at);
         Reading {
             enclosed: self.receivers[sensor].enclosed,
             stokes,
@@ -122,13 +124,15 @@ impl<'a> Readings<'a> {
             diffuse: self.channels.diffuse.map(paired),
         }
     }
+}
 
-    fn paired(&self, tally: &Tally, sensor: usize, first: usize, channel: usize) -> Paired {
-        let other = tally.estimate(|means| means.at(first + channel));
-        let difference =
-            tally.estimate(|means: &Means| means.at(first) - means.at(first + channel));
-        Paired {
-            value: other.mean + self.exact[sensor][0],
+impl Paired {
+    /// A channel beside the main model's S0, both read by `at`; the `exact` part is the same in both.
+    fn new(tally: &Tally, exact: f64, channel: usize, at: impl Fn(&Means, usize) -> f64) -> Self {
+        let other = tally.estimate(|means| at(means, channel));
+        let difference = tally.estimate(|means| at(means, 0) - at(means, channel));
+        Self {
+            value: other.mean + exact,
             standard_error: other.standard_error,
             difference: difference.mean,
             difference_standard_error: difference.standard_error,

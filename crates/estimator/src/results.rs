@@ -40,6 +40,10 @@ pub struct Group {
     pub mean: f64,
     /// Standard error of `mean`; points that share walks are correlated, and this knows it.
     pub mean_standard_error: f64,
+    /// Mean of the scalar model over the free points, where asked for.
+    pub scalar: Option<Paired>,
+    /// Mean of the diffuse model over the free points, where asked for.
+    pub diffuse: Option<Paired>,
 }
 
 /// The irradiance Stokes vector at one sensor point, in unit/m².

@@ -165,7 +165,7 @@ impl Tree {
         &self,
         origin: DVec3,
         direction: DVec3,
-        exists: impl Fn(u32, &Line) -> bool,
+        exists: impl Fn(u32, &Line, f64) -> bool,
     ) -> Option<Met> {
         let (line, moved) = self.line(origin, direction)?;
         let mut first: Option<(f64, u32)> = None;
@@ -180,7 +180,7 @@ impl Tree {
                 let nearer = first.is_none_or(|(least, latest)| {
                     distance < least || (distance <= least && triangle > latest)
                 });
-                if distance > 0.0 && nearer && exists(triangle, &line) {
+                if distance > 0.0 && nearer && exists(triangle, &line, distance) {
                     first = Some((distance, triangle));
                     rounded_up(distance * self.frame.scale)
                 } else {
@@ -201,7 +201,7 @@ impl Tree {
         origin: DVec3,
         direction: DVec3,
         length: f64,
-        exists: impl Fn(u32, &Line) -> bool,
+        exists: impl Fn(u32, &Line, f64) -> bool,
     ) -> bool {
         let Some((line, moved)) = self.line(origin, direction) else {
             return false;
@@ -218,7 +218,7 @@ impl Tree {
                     Some(distance)
                         if distance > 0.0
                             && distance < length
-                            && exists(self.bvh.primitive_indices[leaf], &line) =>
+                            && exists(self.bvh.primitive_indices[leaf], &line, distance) =>
                     {
                         0.0
                     }

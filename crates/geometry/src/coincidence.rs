@@ -3,7 +3,9 @@
 use crate::bvh::Tree;
 use crate::polygon::{Plane, Polygon};
 use crate::{Mesh, Triangle};
+use glam::DVec3;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Cosine² of the angle beyond which planes are not parallel, however small the triangles.
 const PARALLEL: f64 = 0.98;
@@ -30,10 +32,23 @@ pub(crate) type Kind = [u32; 4];
 /// Which triangles are covered, and by which later ones.
 #[derive(Debug, Default)]
 pub(crate) struct Coverings {
-    /// (hidden, covering), ascending.
-    pairs: Vec<(u32, u32)>,
+    /// Covered triangles, ascending.
+    hidden: Vec<Hidden>,
+    /// Covering triangles, those of each hidden one together and ascending.
+    covering: Vec<u32>,
     /// One bit a triangle: whether it is covered at all. Empty where nothing is.
     covered: Vec<u64>,
+}
+
+/// A triangle that others cover in part.
+#[derive(Debug)]
+struct Hidden {
+    triangle: u32,
+    /// Its covering triangles, in the list of all.
+    covering: Range<usize>,
+    /// Corners of a box around them: most lines that cross a large triangle pass far from a small cover.
+    least: DVec3,
+    most: DVec3,
 }
 
 impl Coverings {
@@ -67,14 +82,27 @@ impl Coverings {
             }
         }
         pairs.sort_unstable();
-        let mut covered = Vec::new();
+        let mut coverings = Self::default();
         if !pairs.is_empty() {
-            covered.resize(mesh.len().div_ceil(64), 0);
-            for &(hidden, _) in &pairs {
-                covered[hidden as usize / 64] |= 1 << (hidden % 64);
-            }
+            coverings.covered.resize(mesh.len().div_ceil(64), 0);
         }
-        Self { pairs, covered }
+        for same in pairs.chunk_by(|one, next| one.0 == next.0) {
+            let triangle = same[0].0;
+            coverings.covered[triangle as usize / 64] |= 1 << (triangle % 64);
+            let first = coverings.covering.len();
+            coverings.covering.extend(same.iter().map(|pair| pair.1));
+            let corners = || {
+                same.iter()
+                    .flat_map(|pair| mesh.triangle(pair.1 as usize).vertices)
+            };
+            coverings.hidden.push(Hidden {
+                triangle,
+                covering: first..coverings.covering.len(),
+                least: corners().fold(DVec3::INFINITY, DVec3::min) - tolerance,
+                most: corners().fold(DVec3::NEG_INFINITY, DVec3::max) + tolerance,
+            });
+        }
+        coverings
     }
 
     /// Whether some later triangle covers part of this one.
@@ -85,16 +113,32 @@ impl Coverings {
             .is_some_and(|bits| bits >> (triangle % 64) & 1 == 1)
     }
 
+    fn hidden(&self, triangle: u32) -> Option<&Hidden> {
+        if !self.any(triangle) {
+            return None;
+        }
+        let found = self
+            .hidden
+            .binary_search_by_key(&triangle, |hidden| hidden.triangle);
+        found.ok().map(|index| &self.hidden[index])
+    }
+
     /// The later triangles that cover part of this one, the latest first.
     pub fn over(&self, triangle: u32) -> impl Iterator<Item = u32> {
-        let range = if self.any(triangle) {
-            let start = self.pairs.partition_point(|pair| pair.0 < triangle);
-            let end = self.pairs.partition_point(|pair| pair.0 <= triangle);
-            start..end
-        } else {
-            0..0
-        };
-        self.pairs[range].iter().rev().map(|pair| pair.1)
+        let range = self
+            .hidden(triangle)
+            .map_or(0..0, |hidden| hidden.covering.clone());
+        self.covering[range].iter().rev().copied()
+    }
+
+    /// The later triangles that may cover this point of a triangle, the latest first.
+    #[inline]
+    pub fn over_point(&self, triangle: u32, point: DVec3) -> impl Iterator<Item = u32> {
+        let hidden = self
+            .hidden(triangle)
+            .filter(|hidden| point.cmpge(hidden.least).all() && point.cmple(hidden.most).all());
+        let range = hidden.map_or(0..0, |hidden| hidden.covering.clone());
+        self.covering[range].iter().rev().copied()
     }
 
     /// Area in m² that each covering triangle hides, the latest first, and what is left of the hidden one.
@@ -128,8 +172,10 @@ impl Coverings {
 
     /// Adds up who hides how much of whom; each place counts once, for the latest surface there.
     pub fn add_to(&self, mesh: &Mesh, areas: &mut BTreeMap<Kind, f64>) {
-        for same in self.pairs.chunk_by(|one, next| one.0 == next.0) {
-            let hidden = same[0].0;
+        for &Hidden {
+            triangle: hidden, ..
+        } in &self.hidden
+        {
             let whole = mesh.triangle(hidden as usize).area();
             for (covering, area) in self.shares(mesh, hidden).0 {
                 if area > 1e-12 * whole {

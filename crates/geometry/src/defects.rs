@@ -99,9 +99,12 @@ impl Edges {
     }
 }
 
-/// Examines a mesh that [`Surfaces::new`](crate::Surfaces::new) accepts, before or after its cleaning.
+/// Examines a mesh, before or after its cleaning; one that [`Surfaces::new`](crate::Surfaces::new) refuses has no report.
 #[must_use]
 pub fn of(mesh: &Mesh) -> Report {
+    if clean::check(mesh).is_err() {
+        return Report::default();
+    }
     let (centre, radius) = clean::bounding_sphere(mesh);
     let tolerance = tolerance(centre, radius);
     let waste = clean::waste(mesh, clean::slack(centre, radius));
@@ -218,6 +221,15 @@ mod tests {
     fn a_sound_box_has_no_defect() {
         let sound = shape::cuboid(DVec3::ZERO, DVec3::ONE, false);
         assert_eq!(of(&mesh(&[sound])), Report::default());
+    }
+
+    #[test]
+    fn a_mesh_with_a_vertex_that_does_not_exist_is_no_reason_to_panic() {
+        let (positions, mut triangles) = shape::cuboid(DVec3::ZERO, DVec3::ONE, true);
+        triangles[0][0] = 8;
+        let broken = mesh(&[(positions, triangles)]);
+        assert_eq!(of(&broken), Report::default());
+        assert!(Solids::of(&broken).is_empty());
     }
 
     #[test]

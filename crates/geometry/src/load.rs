@@ -8,8 +8,8 @@
 //! aside (lines, cameras, morph targets, an unreadable texture) is said in [`Model::notes`]. No content of a
 //! file makes an import panic: it ends in a [`LoadError`] that names the place.
 
-// Tests may unwrap, and compare floats where the arithmetic is exact.
-#![cfg_attr(test, allow(clippy::unwrap_used, clippy::float_cmp))]
+// Tests compare floats where the arithmetic is exact.
+#![cfg_attr(test, allow(clippy::float_cmp))]
 
 mod error;
 mod gltf;

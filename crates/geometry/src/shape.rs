@@ -57,11 +57,17 @@ pub fn disc(centre: DVec3, normal: DVec3, radius: f64, segments: u32) -> Faces {
         let (sin, cos) = libm::sincos(step * f64::from(index));
         centre + reach * (cos * x + sin * y)
     });
-    let positions = std::iter::once(centre).chain(rim).collect();
-    let triangles = (0..segments)
-        .map(|index| [0, 1 + index, 1 + (index + 1) % segments])
-        .collect();
-    (positions, triangles)
+    // Every second corner is cut off, again and again. A fan from the centre would put all boxes of its triangles over
+    // one another, and every ray towards a lamp would have to test a dozen of them.
+    let mut corners: Vec<u32> = (0..segments).collect();
+    let mut triangles = Vec::new();
+    while corners.len() > 2 {
+        let ears = (1..corners.len()).step_by(2);
+        triangles
+            .extend(ears.map(|i| [corners[i - 1], corners[i], corners[(i + 1) % corners.len()]]));
+        corners = corners.into_iter().step_by(2).collect();
+    }
+    (rim.collect(), triangles)
 }
 
 /// A sphere as an icosahedron whose faces are cut in four `subdivisions` times; all vertices lie on the sphere.

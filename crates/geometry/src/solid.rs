@@ -26,10 +26,14 @@ pub struct Solid {
 }
 
 impl Solids {
-    /// Finds the solids of a mesh that [`Surfaces::new`](crate::Surfaces::new) accepts: within each object the parts
-    /// that hang together by edges, vertices within the [tolerance](crate::Surfaces::tolerance) taken as one.
+    /// Finds the solids of a mesh: within each object the parts that hang together by edges, vertices within the
+    /// [tolerance](crate::Surfaces::tolerance) taken as one. A mesh that [`Surfaces::new`](crate::Surfaces::new)
+    /// refuses has none.
     #[must_use]
     pub fn of(mesh: &Mesh) -> Self {
+        if clean::check(mesh).is_err() {
+            return Self::default();
+        }
         let (centre, radius) = clean::bounding_sphere(mesh);
         let mut dropped = vec![false; mesh.len()];
         for index in clean::waste(mesh, clean::slack(centre, radius)).indices() {

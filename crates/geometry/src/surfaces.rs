@@ -76,9 +76,11 @@ impl Surfaces {
     /// one of the triangles there, also where one long edge lies against several short ones.
     #[must_use]
     pub fn nearest(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
-        let met = self.tree.nearest(origin, direction, |triangle, line| {
-            self.exists(triangle, line)
-        })?;
+        let met = self
+            .tree
+            .nearest(origin, direction, |triangle, line, distance| {
+                self.exists(triangle, line, distance)
+            })?;
         Some(Hit {
             triangle: met.triangle,
             distance: met.distance,
@@ -104,30 +106,32 @@ impl Surfaces {
         let direction = (to - from) / length;
         !self
             .tree
-            .blocked(from, direction, length, |triangle, line| {
-                self.exists(triangle, line)
+            .blocked(from, direction, length, |triangle, line, distance| {
+                self.exists(triangle, line, distance)
             })
     }
 
     /// Whether a ray meets no surface up to infinity. `from` in m, `direction` a unit vector.
     #[must_use]
     pub fn escapes(&self, from: DVec3, direction: DVec3) -> bool {
-        !self
-            .tree
-            .blocked(from, direction, f64::INFINITY, |triangle, line| {
-                self.exists(triangle, line)
-            })
+        !self.tree.blocked(
+            from,
+            direction,
+            f64::INFINITY,
+            |triangle, line, distance| self.exists(triangle, line, distance),
+        )
     }
 
-    /// Whether a triangle is there for a line that crosses it: not where the line crosses one that covers it too.
+    /// Whether a triangle is there for a line that crosses it at a distance: not where the line crosses one that covers
+    /// it too.
     ///
     /// The same line asks both, so none slips through between the edge of one and the rim of the other.
     #[inline]
-    fn exists(&self, triangle: u32, line: &Line) -> bool {
+    fn exists(&self, triangle: u32, line: &Line, distance: f64) -> bool {
         !self.coverings.any(triangle)
             || !self
                 .coverings
-                .over(triangle)
+                .over_point(triangle, line.origin + distance * line.direction)
                 .any(|covering| line.crossing(&self.triangle(covering).vertices).is_some())
     }
 
@@ -218,7 +222,7 @@ impl Surfaces {
     pub fn exposed(&self, triangle: u32, point: DVec3) -> bool {
         !self
             .coverings
-            .over(triangle)
+            .over_point(triangle, point)
             .any(|covering| self.triangle(covering).covers(point))
     }
 

@@ -1,121 +1,98 @@
 //! Wavefront MTL: the materials of an OBJ file.
+//!
+//! The crate tobj reads them, from a text that it can read: it panics at a colour of one number (a grey, as the
+//! format allows), knows nothing of `Tr`, spectra or options before a number, and lets NaN pass.
 
 use super::text::{Line, Lines, words};
 use super::{LoadError, Look};
 use std::fs::File;
 use std::path::Path;
 
-/// The materials of a file in its order.
-///
-/// One number instead of three is a grey, as the format allows; fields without a meaning here are passed over.
-pub(super) fn read(
+/// The text of a file as tobj reads it: the fields of [`Look::Mtl`] with their values checked, one a line.
+pub(super) fn cleaned(
     file: &Path,
     opened: File,
     notes: &mut Vec<String>,
-) -> Result<Vec<(String, Look)>, LoadError> {
-    let mut materials = Vec::new();
-    Lines::of(file, opened).visit(|line| {
-        if line.keyword == "newmtl" {
-            materials.push((line.rest.to_owned(), unsaid()));
-        } else if let Some((name, look)) = materials.last_mut() {
-            set(file, &line, name, look, notes)?;
-        }
-        Ok(())
-    })?;
-    Ok(materials)
-}
-
-/// A look of which the file says nothing.
-pub(super) fn unsaid() -> Look {
-    Look::Mtl {
-        kd: None,
-        ks: None,
-        ke: None,
-        ni: None,
-        d: None,
-        tf: None,
-        illum: None,
-        textured: false,
-        pr: None,
-        pm: None,
-    }
-}
-
-fn set(
-    file: &Path,
-    line: &Line,
-    name: &str,
-    look: &mut Look,
-    notes: &mut Vec<String>,
-) -> Result<(), LoadError> {
-    let Look::Mtl {
-        kd,
-        ks,
-        ke,
-        ni,
-        d,
-        tf,
-        illum,
-        textured,
-        pr,
-        pm,
-    } = look
-    else {
-        return Ok(());
-    };
-    match line.keyword {
-        "Kd" => *kd = color(file, line, name, notes)?,
-        "Ks" => *ks = color(file, line, name, notes)?,
-        "Ke" => *ke = color(file, line, name, notes)?,
-        "Tf" => *tf = color(file, line, name, notes)?,
-        "Ni" => *ni = Some(number(file, line)?),
-        "d" => *d = Some(number(file, line)?),
-        "Tr" => *d = Some(1.0 - number(file, line)?),
-        "Pr" => *pr = Some(number(file, line)?),
-        "Pm" => *pm = Some(number(file, line)?),
-        "illum" => {
-            let value = number(file, line)?;
-            *illum = (0..=10).find(|&model| f64::from(model).total_cmp(&value).is_eq());
-            if illum.is_none() {
-                return Err(invalid(file, line, "an illumination model is 0 to 10"));
+) -> Result<String, LoadError> {
+    let mut lines = Lines::of(file, opened);
+    let mut text = String::new();
+    let mut name = String::new();
+    while let Some(line) = lines.line()? {
+        let (keyword, value) = match line.keyword {
+            "newmtl" if line.rest.is_empty() => return Err(invalid(file, &line, "a name")),
+            "newmtl" => {
+                name = line.rest.to_owned();
+                ("newmtl", name.clone())
             }
-        }
-        "map_Kd" => {
-            *textured = true;
-            notes.push(format!(
-                "material {name}: its texture (map_Kd) is not read, its Kd stands"
-            ));
-        }
-        "map_Ke" => notes.push(format!(
-            "material {name}: its emission texture (map_Ke) is not read, its Ke stands"
-        )),
-        _ => {}
+            // Fields before the first material are nobody's.
+            _ if name.is_empty() => continue,
+            keyword @ ("Kd" | "Ks" | "Ke" | "Tf") => {
+                if let Some(kind @ ("spectral" | "xyz")) = words(line.rest).next() {
+                    notes.push(format!(
+                        "material {name}: its {keyword} is given as {kind}, which is not read"
+                    ));
+                    continue;
+                }
+                let [r, g, b] = color(file, &line)?;
+                (keyword, format!("{r} {g} {b}"))
+            }
+            keyword @ ("Ni" | "d" | "Pr" | "Pm") => (keyword, number(file, &line)?.to_string()),
+            "Tr" => ("d", (1.0 - number(file, &line)?).to_string()),
+            "illum" => {
+                let value = number(file, &line)?;
+                let model = (0..=10).find(|&model| f64::from(model).total_cmp(&value).is_eq());
+                let model: u8 = model
+                    .ok_or_else(|| invalid(file, &line, "an illumination model is 0 to 10"))?;
+                ("illum", model.to_string())
+            }
+            "map_Kd" => {
+                notes.push(format!(
+                    "material {name}: its texture (map_Kd) is not read, its Kd stands"
+                ));
+                ("map_Kd", format!("file {}", line.rest))
+            }
+            "map_Ke" => {
+                notes.push(format!(
+                    "material {name}: its emission texture (map_Ke) is not read, its Ke stands"
+                ));
+                continue;
+            }
+            _ => continue,
+        };
+        text += &format!("{keyword} {value}\n");
     }
-    Ok(())
+    Ok(text)
 }
 
-/// One number (a grey) or three; none, with a note, where the colour is a spectrum or in CIE XYZ.
-fn color(
-    file: &Path,
-    line: &Line,
-    name: &str,
-    notes: &mut Vec<String>,
-) -> Result<Option<[f64; 3]>, LoadError> {
-    if let Some(kind @ ("spectral" | "xyz")) = words(line.rest).next() {
-        notes.push(format!(
-            "material {name}: its {} is given as {kind}, which is not read",
-            line.keyword
-        ));
-        return Ok(None);
+/// The fields of a material that tobj has read from a cleaned text; all none for a new one.
+pub(super) fn look(material: &tobj::Material) -> Look {
+    // What tobj does not know it keeps as text.
+    let numbers = |keyword: &str| -> Vec<f64> {
+        let text = material.unknown_param.get(keyword);
+        let words = text.iter().flat_map(|text| words(text));
+        words.filter_map(|word| word.parse().ok()).collect()
+    };
+    Look::Mtl {
+        kd: material.diffuse,
+        ks: material.specular,
+        ke: material.emissive,
+        ni: material.optical_density,
+        d: material.dissolve,
+        tf: numbers("Tf").try_into().ok(),
+        illum: material.illumination_model,
+        textured: material.diffuse_texture.is_some(),
+        pr: numbers("Pr").first().copied(),
+        pm: numbers("Pm").first().copied(),
     }
-    let allowed = "one finite number or three";
-    let values = words(line.rest)
-        .map(|word| finite(word).ok_or_else(|| invalid(file, line, allowed)))
-        .collect::<Result<Vec<f64>, _>>()?;
-    match values[..] {
-        [grey] => Ok(Some([grey; 3])),
-        [r, g, b] => Ok(Some([r, g, b])),
-        _ => Err(invalid(file, line, allowed)),
+}
+
+/// One number (a grey) or three.
+fn color(file: &Path, line: &Line) -> Result<[f64; 3], LoadError> {
+    let values: Option<Vec<f64>> = words(line.rest).map(finite).collect();
+    match values.as_deref() {
+        Some(&[grey]) => Ok([grey; 3]),
+        Some(&[r, g, b]) => Ok([r, g, b]),
+        _ => Err(invalid(file, line, "one finite number or three")),
     }
 }
 
@@ -151,8 +128,10 @@ mod tests {
         let path = folder.path().join("room.mtl");
         std::fs::write(&path, text).unwrap();
         let mut notes = Vec::new();
-        let read = read(&path, File::open(&path).unwrap(), &mut notes)?;
-        Ok((read, notes))
+        let cleaned = cleaned(&path, File::open(&path).unwrap(), &mut notes)?;
+        let (found, _) = tobj::load_mtl_buf(&mut cleaned.as_bytes()).unwrap();
+        let looks = found.iter().map(|m| (m.name.clone(), look(m)));
+        Ok((looks.collect(), notes))
     }
 
     #[test]
@@ -184,7 +163,7 @@ mod tests {
             panic!()
         };
         assert_eq!((kd, d, ni), (Some([0.5; 3]), Some(0.75), None));
-        assert_eq!(read[1], ("B".to_owned(), unsaid()));
+        assert_eq!(read[1], ("B".to_owned(), look(&tobj::Material::default())));
     }
 
     #[test]
@@ -212,7 +191,7 @@ mod tests {
     #[test]
     fn a_spectrum_is_passed_over_with_a_note() {
         let (read, notes) = materials(b"newmtl A\nKd spectral a.rfl 1\n").unwrap();
-        assert_eq!(read[0].1, unsaid());
+        assert_eq!(read[0].1, look(&tobj::Material::default()));
         assert!(notes[0].contains("Kd") && notes[0].contains("spectral"));
     }
 }

@@ -1,0 +1,64 @@
+//! Overrides and options that cannot be.
+
+use super::super::ROOM;
+use super::{assert_told, refusal};
+
+#[test]
+fn an_override_is_judged_like_the_file_and_told_as_typed() {
+    for (entry, parts) in [
+        (
+            "material.plaster.roh=0.3",
+            ["\"roh\"", "nearest is \"rho\""],
+        ),
+        (
+            "materal.plaster.rho=0.3",
+            ["\"materal\"", "nearest is \"material\""],
+        ),
+        (
+            "sensor.dsek.frame=fixed",
+            ["\"dsek\"", "nearest is \"desk\""],
+        ),
+        (
+            "material.plaster.rho=1.2",
+            ["rho must be a number from 0 to 1", "found 1.2"],
+        ),
+        (
+            "material.plaster.rho=[1",
+            ["not valid TOML", "unclosed array"],
+        ),
+        ("shape.7.material=plaster", ["1 entries", "no 7"]),
+    ] {
+        let told = refusal(ROOM.as_bytes(), &[], &["--set", entry]);
+        assert_told(
+            &told,
+            &[&format!("error: --set {entry}: "), parts[0], parts[1]],
+        );
+    }
+    let told = refusal(ROOM.as_bytes(), &[], &["--set", "material.plaster.rho"]);
+    assert_told(&told, &["material.plaster.rho", "--set", "KEY=VALUE"]);
+}
+
+#[test]
+fn an_option_is_judged_like_the_file_and_told_as_typed() {
+    for (option, value, allowed) in [
+        ("--samples", "0", "a whole number ≥ 1, found 0"),
+        ("--samples", "many", "a whole number ≥ 1"),
+        ("--seconds", "-1", "a number > 0, found -1"),
+        ("--relative-error", "nan", "a number > 0, found NaN"),
+        ("--seed", "-3", "a whole number ≥ 0, found -3"),
+        ("--model", "polarized", "nearest is \"polarised\""),
+        ("--estimator", "direct", "not available yet; use \"auto\""),
+        (
+            "--representation",
+            "stokes",
+            "\"intensity\" or \"linear\" or \"full\"",
+        ),
+        ("--threads", "0", "a whole number ≥ 1"),
+        ("--threads", "two", "a whole number ≥ 1"),
+    ] {
+        let told = refusal(ROOM.as_bytes(), &[], &[option, value]);
+        assert_told(&told, &[&format!("error: {option} {value}: "), allowed]);
+    }
+    let told = refusal(ROOM.as_bytes(), &[], &["--sample", "64"]);
+    assert_told(&told, &["'--sample'", "'--samples'"]);
+}

@@ -1,0 +1,100 @@
+//! What the program prints, and where it says nothing.
+
+use super::{Folder, ROOM, stderr, stdout};
+
+#[test]
+fn check_prints_every_value_with_its_origin_and_computes_nothing() {
+    let folder = Folder::new(ROOM.as_bytes(), &[]);
+    let output = folder.malus(&[
+        "check",
+        "room.toml",
+        "--set",
+        "material.plaster.a=0.25",
+        "--json",
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let report: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let values = report["materials"][0]["values"].as_array().unwrap();
+    let origin = |key: &str| {
+        let value = values.iter().find(|value| value["key"] == key).unwrap();
+        (
+            value["value"].as_str().unwrap(),
+            value["origin"].as_str().unwrap(),
+        )
+    };
+    assert_eq!(origin("rho"), ("0.5", "room.toml:14:7"));
+    assert_eq!(origin("a"), ("0.25", "--set material.plaster.a=0.25"));
+    assert_eq!(origin("n"), ("1.5", "default"));
+    assert_eq!(
+        (&report["triangles"], &report["representation"]),
+        (&12.into(), &"linear".into())
+    );
+    // 4π sr of 10 lm/sr.
+    let flux = report["emitters"][0]["flux"].as_f64().unwrap();
+    assert!(
+        (flux / (40.0 * std::f64::consts::PI) - 1.0).abs() < 1e-14,
+        "{flux}"
+    );
+    assert!(!folder.path("results").exists());
+
+    let text = stdout(&folder.malus(&["check", "room.toml"]));
+    for part in [
+        "plaster",
+        "12 triangles",
+        "room.toml:14:7",
+        "125.66",
+        "desk",
+        "No defects, no warnings",
+    ] {
+        assert!(text.contains(part), "no {part:?} in:\n{text}");
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    let folder = Folder::new(ROOM.as_bytes(), &[]);
+    for words in [["check", "room.toml"], ["run", "room.toml"]] {
+        let mut child = folder
+            .command(&words)
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(
+            (output.status.code(), stderr(&output)),
+            (Some(0), String::new()),
+            "{words:?}"
+        );
+    }
+}
+
+#[test]
+fn a_quiet_run_prints_nothing() {
+    let folder = Folder::new(ROOM.as_bytes(), &[]);
+    let output = folder.run("out", &["--quiet"]);
+    assert_eq!(
+        (stdout(&output), stderr(&output)),
+        (String::new(), String::new())
+    );
+    assert!(folder.path("out/summary.json").exists());
+}
+
+#[test]
+fn results_go_to_a_folder_of_the_scenes_name_by_default() {
+    let folder = Folder::new(ROOM.as_bytes(), &[]);
+    let output = folder.malus(&["run", "room.toml"]);
+    assert_eq!(output.status.code(), Some(0));
+    let mut names: Vec<String> = std::fs::read_dir(folder.path("results/room"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["grids.csv", "sensors.csv", "summary.json"]);
+    assert!(
+        stdout(&output).contains("results/room"),
+        "{}",
+        stdout(&output)
+    );
+}

@@ -1,0 +1,207 @@
+//! How a run ends: done, failed, by the clock, by the user.
+
+use super::{Folder, ROOM, stderr, stdout};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// A run that would go on for ever, with results in `out`.
+fn endless(folder: &Folder) -> Child {
+    let words = ["run", "room.toml", "-o", "out", "--relative-error", "1e-9"];
+    let mut command = folder.command(&words);
+    command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+/// Ends a run by a signal once it has begun to compute.
+fn interrupted(folder: &Folder, signal: &str) -> Output {
+    let child = endless(folder);
+    let started = Instant::now();
+    // The folder is made right before the first round.
+    while !folder.path("out").exists() {
+        assert!(
+            started.elapsed() < Duration::from_secs(20),
+            "nothing begins"
+        );
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    std::thread::sleep(Duration::from_millis(600));
+    let told = Command::new("kill")
+        .args([signal, &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(told.success());
+    let told = Instant::now();
+    let output = child.wait_with_output().unwrap();
+    assert!(
+        told.elapsed() < Duration::from_secs(5),
+        "{:?} to stop",
+        told.elapsed()
+    );
+    output
+}
+
+/// The number after `--samples` in what is printed of a run that is to be repeated.
+fn repeating(output: &Output) -> String {
+    let text = stdout(output);
+    let line = text
+        .lines()
+        .find(|line| line.contains("--samples"))
+        .unwrap_or_else(|| panic!("{text}"));
+    let words = line
+        .split_whitespace()
+        .skip_while(|word| *word != "--samples");
+    words.skip(1).next().unwrap().to_owned()
+}
+
+#[test]
+fn an_interrupted_run_writes_what_it_has_and_marks_it() {
+    for signal in ["-INT", "-TERM"] {
+        let folder = Folder::new(ROOM.as_bytes(), &[]);
+        let output = interrupted(&folder, signal);
+        assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+        assert!(
+            stderr(&output).contains("incomplete"),
+            "{}",
+            stderr(&output)
+        );
+        let summary = folder.json("out/summary.json");
+        assert_eq!(summary["complete"], false);
+        let samples = summary["samples"].as_u64().unwrap();
+        assert!(samples > 0);
+        // What is there is as good as if it had been asked for.
+        assert_eq!(repeating(&output), samples.to_string());
+        folder.run("again", &["--samples", &samples.to_string()]);
+        assert_eq!(folder.json("again/summary.json")["complete"], true);
+        assert_eq!(
+            folder.text("again/sensors.csv"),
+            folder.text("out/sensors.csv")
+        );
+    }
+}
+
+#[test]
+fn a_limit_of_time_is_kept_and_tells_how_to_repeat_the_run() {
+    let folder = Folder::new(ROOM.as_bytes(), &[]);
+    let output = folder.run("out", &["--seconds", "1"]);
+    let summary = folder.json("out/summary.json");
+    let seconds = summary["seconds"].as_f64().unwrap();
+    // Checkpoints lie so close that at least a third of the time is used; above, one checkpoint on a busy machine.
+    assert!((0.33..2.0).contains(&seconds), "{seconds} s");
+    assert_eq!(summary["complete"], true);
+    let samples = repeating(&output);
+    assert_eq!(summary["samples"].to_string(), samples);
+    folder.run("again", &["--samples", &samples]);
+    assert_eq!(
+        folder.text("again/sensors.csv"),
+        folder.text("out/sensors.csv")
+    );
+}
+
+#[test]
+fn a_limit_of_error_is_reached_and_tells_how_to_repeat_the_run() {
+    let folder = Folder::new(ROOM.as_bytes(), &[]);
+    let output = folder.run("out", &["--relative-error", "0.002"]);
+    let summary = folder.json("out/summary.json");
+    assert!(
+        summary["relative_error_max"].as_f64().unwrap() <= 0.002,
+        "{summary}"
+    );
+    folder.run("again", &["--samples", &repeating(&output)]);
+    assert_eq!(
+        folder.text("again/sensors.csv"),
+        folder.text("out/sensors.csv")
+    );
+}
+
+#[test]
+fn the_first_rule_that_is_reached_stops_the_run() {
+    let folder = Folder::new(ROOM.as_bytes(), &[]);
+    folder.run(
+        "out",
+        &[
+            "--seconds",
+            "600",
+            "--samples",
+            "128",
+            "--relative-error",
+            "1e-9",
+        ],
+    );
+    let summary = folder.json("out/summary.json");
+    assert_eq!(
+        (&summary["samples"], &summary["complete"]),
+        (&128.into(), &true.into())
+    );
+}
+
+#[test]
+fn results_that_cannot_be_written_fail_the_run_before_it_begins() {
+    let folder = Folder::new(ROOM.as_bytes(), &[("out", b"a file")]);
+    for directory in ["out", "out/deeper"] {
+        let words = [
+            "run",
+            "room.toml",
+            "-o",
+            directory,
+            "--relative-error",
+            "1e-9",
+        ];
+        let output = folder.malus(&words);
+        let told = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{told}");
+        assert!(
+            told.starts_with("error: ") && told.contains(directory),
+            "{told}"
+        );
+        assert!(!told.contains("panicked"), "{told}");
+    }
+    assert_eq!(folder.text("out"), "a file");
+}
+
+/// A file that stands in the place of one table: found at the end, and nothing half-written is left.
+#[test]
+fn a_table_that_cannot_be_written_fails_the_run() {
+    let folder = Folder::new(ROOM.as_bytes(), &[("out/", b""), ("out/sensors.csv/", b"")]);
+    let output = folder.malus(&["run", "room.toml", "-o", "out"]);
+    let told = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(
+        told.contains("error: ") && told.contains("sensors.csv"),
+        "{told}"
+    );
+    let left: Vec<_> = std::fs::read_dir(folder.path("out"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    assert!(!left.iter().any(|name| name == "summary.json"), "{left:?}");
+    assert!(
+        !left
+            .iter()
+            .any(|name| name.to_string_lossy().ends_with(".part")),
+        "{left:?}"
+    );
+}
+
+#[test]
+fn a_useless_command_line_is_a_bad_argument() {
+    let folder = Folder::new(ROOM.as_bytes(), &[]);
+    for words in [
+        &[][..],
+        &["rum", "room.toml"],
+        &["run"],
+        &["run", "room.toml", "more.toml"],
+    ] {
+        let output = folder.malus(words);
+        assert_eq!(output.status.code(), Some(2), "{words:?}");
+        assert!(!stderr(&output).is_empty(), "{words:?}");
+    }
+    for words in [["--help", ""], ["run", "--help"], ["--version", ""]] {
+        let words: Vec<&str> = words.into_iter().filter(|word| !word.is_empty()).collect();
+        let output = folder.malus(&words);
+        assert_eq!(output.status.code(), Some(0), "{words:?}");
+        assert!(stdout(&output).contains("malus"), "{words:?}");
+    }
+}
