@@ -2,6 +2,10 @@
 //!
 //! Nothing here has a state that a walk could leave behind, so walks that part company meet again at
 //! the next vertex, and no number depends on the thread that asked for it.
+//!
+//! The first vertices of the walks of one replica are spread evenly: Owen-scrambled Sobol' points (Burley 2020), four
+//! dimensions at a time, scrambled anew for each replica, so that the spread between replicas is an honest error.
+//! Each point by itself is uniform, so any number of them is without bias. What comes later is independent.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -21,6 +25,12 @@ pub(crate) enum Purpose {
 
 const PURPOSES: u64 = 4;
 const BLOCK: u64 = 4;
+
+/// Vertices of a walk, its start included, whose numbers are spread evenly.
+const SPREAD: u32 = 4;
+
+/// Length of a Sobol' sequence before it is scrambled anew, as a power of two.
+const SEQUENCE: u32 = 16;
 
 /// Weyl increment of SplitMix64 (Steele, Lea & Flood 2014): the odd number nearest 2⁶⁴/φ.
 const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
@@ -61,6 +71,8 @@ impl Stream {
     #[must_use]
     pub(crate) fn walk(self, index: u64) -> Uniforms {
         Uniforms {
+            stream: self.key,
+            index,
             key: mixed(
                 self.key
                     .wrapping_add(mixed(index.wrapping_mul(GOLDEN) ^ GOLDEN)),
@@ -72,18 +84,31 @@ impl Stream {
 /// All uniform numbers of one walk.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Uniforms {
+    stream: u64,
+    index: u64,
     key: u64,
 }
 
 impl Uniforms {
     /// Four numbers in [0, 1), multiples of 2⁻⁵³, for the vertex at `depth`.
     #[must_use]
+    #[inline]
     pub(crate) fn at(self, depth: u32, purpose: Purpose) -> [f64; 4] {
-        let first = (u64::from(depth) * PURPOSES + purpose as u64) * BLOCK;
+        let block = u64::from(depth) * PURPOSES + purpose as u64;
+        let bits = |i: usize| {
+            let counter = block * BLOCK + i as u64 + 1;
+            mixed(self.key.wrapping_add(counter.wrapping_mul(GOLDEN)))
+        };
+        if depth >= SPREAD {
+            return std::array::from_fn(|i| (bits(i) >> 11) as f64 * (0.5 / (1u64 << 52) as f64));
+        }
+        let sequence = (self.index >> SEQUENCE) << 32 | block;
+        let seed = mixed(self.stream ^ mixed(sequence.wrapping_mul(GOLDEN))) as u32;
+        let index = (self.index & ((1 << SEQUENCE) - 1)) as u32;
+        let point = sobol_burley::sample_4d(index, 0, seed);
+        // Single precision gives 23 bits; independent ones fill the other 30.
         std::array::from_fn(|i| {
-            let counter = first + i as u64 + 1;
-            let bits = mixed(self.key.wrapping_add(counter.wrapping_mul(GOLDEN)));
-            (bits >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+            f64::from(point[i]) + (bits(i) >> 34) as f64 * (0.5 / (1u64 << 52) as f64)
         })
     }
 }
@@ -100,7 +125,7 @@ mod tests {
         for index in 0..65_536 {
             for (u, cells) in stream
                 .walk(index)
-                .at(3, Purpose::Scatter)
+                .at(SPREAD, Purpose::Scatter)
                 .into_iter()
                 .zip(&mut counts)
             {
@@ -120,29 +145,46 @@ mod tests {
     #[test]
     fn neighbours_in_every_argument_are_uncorrelated() {
         let n = 20_000u64;
-        let reference = |i: u64| Stream::new(7, 3).branch(5).walk(i).at(2, Purpose::Scatter)[0];
+        let reference = |i: u64| {
+            Stream::new(7, 3)
+                .branch(5)
+                .walk(i)
+                .at(SPREAD, Purpose::Scatter)[0]
+        };
         type Draw = fn(u64) -> f64;
         let neighbours: [(&str, Draw); 6] = [
             ("seed", |i| {
-                Stream::new(8, 3).branch(5).walk(i).at(2, Purpose::Scatter)[0]
+                Stream::new(8, 3)
+                    .branch(5)
+                    .walk(i)
+                    .at(SPREAD, Purpose::Scatter)[0]
             }),
             ("replica", |i| {
-                Stream::new(7, 4).branch(5).walk(i).at(2, Purpose::Scatter)[0]
+                Stream::new(7, 4)
+                    .branch(5)
+                    .walk(i)
+                    .at(SPREAD, Purpose::Scatter)[0]
             }),
             ("branch", |i| {
-                Stream::new(7, 3).branch(6).walk(i).at(2, Purpose::Scatter)[0]
+                Stream::new(7, 3)
+                    .branch(6)
+                    .walk(i)
+                    .at(SPREAD, Purpose::Scatter)[0]
             }),
             ("walk", |i| {
                 Stream::new(7, 3)
                     .branch(5)
                     .walk(i + 1)
-                    .at(2, Purpose::Scatter)[0]
+                    .at(SPREAD, Purpose::Scatter)[0]
             }),
             ("depth", |i| {
                 Stream::new(7, 3).branch(5).walk(i).at(3, Purpose::Scatter)[0]
             }),
             ("purpose", |i| {
-                Stream::new(7, 3).branch(5).walk(i).at(2, Purpose::Connect)[0]
+                Stream::new(7, 3)
+                    .branch(5)
+                    .walk(i)
+                    .at(SPREAD, Purpose::Connect)[0]
             }),
         ];
         for (argument, neighbour) in neighbours {
@@ -154,6 +196,42 @@ mod tests {
             let z = covariance * 12.0 * (n as f64).sqrt();
             assert!(z.abs() < 4.5, "{argument}: z = {z}");
         }
+    }
+
+    #[test]
+    fn first_vertices_are_spread_evenly_and_others_are_not() {
+        // 2⁸ points of a (0, 8, 2)-net in base 2: each of 16 × 16 cells, and each of 256 columns, holds one.
+        let stream = Stream::new(3, 1).branch(2);
+        let cells = |depth: u32| {
+            let mut cells: Vec<usize> = (0..256)
+                .map(|index| {
+                    let [_, u, v, _] = stream.walk(index).at(depth, Purpose::Connect);
+                    (u * 16.0) as usize * 16 + (v * 16.0) as usize
+                })
+                .collect();
+            cells.sort_unstable();
+            cells.dedup();
+            cells.len()
+        };
+        assert!((0..SPREAD).all(|depth| cells(depth) == 256));
+        // Of 256 independent points 256 (1 − 1/e) = 162 cells are hit, ± 8.
+        assert!(cells(SPREAD) < 200);
+    }
+
+    #[test]
+    fn spread_numbers_are_uniform_one_by_one() {
+        // Means of u and u² over 20,000 replicas of one and the same walk.
+        let (mut first, mut second) = (0.0, 0.0);
+        let count = 20_000;
+        for replica in 0..count {
+            let u = Stream::new(1, replica).walk(5).at(1, Purpose::Scatter)[2];
+            assert!((0.0..1.0).contains(&u));
+            first += u / f64::from(count);
+            second += u * u / f64::from(count);
+        }
+        // Standard deviations of a uniform number and its square: √(1/12), √(4/45).
+        assert!((first - 0.5).abs() < 4.5 * (1.0 / 12.0 / f64::from(count)).sqrt());
+        assert!((second - 1.0 / 3.0).abs() < 4.5 * (4.0 / 45.0 / f64::from(count)).sqrt());
     }
 
     #[test]

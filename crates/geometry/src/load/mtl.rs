@@ -14,53 +14,54 @@ pub(super) fn cleaned(
     opened: File,
     notes: &mut Vec<String>,
 ) -> Result<String, LoadError> {
-    let mut lines = Lines::of(file, opened);
     let mut text = String::new();
     let mut name = String::new();
-    while let Some(line) = lines.line()? {
-        let (keyword, value) = match line.keyword {
-            "newmtl" if line.rest.is_empty() => return Err(invalid(file, &line, "a name")),
+    Lines::of(file, opened).visit(|line| {
+        let (mut keyword, rest) = (line.keyword, line.rest);
+        let value = match keyword {
+            "newmtl" if rest.is_empty() => return Err(invalid(file, &line, "a name")),
             "newmtl" => {
-                name = line.rest.to_owned();
-                ("newmtl", name.clone())
+                rest.clone_into(&mut name);
+                rest.to_owned()
             }
             // Fields before the first material are nobody's.
-            _ if name.is_empty() => continue,
-            keyword @ ("Kd" | "Ks" | "Ke" | "Tf") => {
-                if let Some(kind @ ("spectral" | "xyz")) = words(line.rest).next() {
+            _ if name.is_empty() => return Ok(()),
+            "Kd" | "Ks" | "Ke" | "Tf" => match words(rest).next() {
+                Some(kind @ ("spectral" | "xyz")) => {
                     notes.push(format!(
                         "material {name}: its {keyword} is given as {kind}, which is not read"
                     ));
-                    continue;
+                    return Ok(());
                 }
-                let [r, g, b] = color(file, &line)?;
-                (keyword, format!("{r} {g} {b}"))
+                _ => color(file, &line)?,
+            },
+            "Ni" | "d" | "Pr" | "Pm" => number(file, &line)?.to_string(),
+            "Tr" => {
+                keyword = "d";
+                (1.0 - number(file, &line)?).to_string()
             }
-            keyword @ ("Ni" | "d" | "Pr" | "Pm") => (keyword, number(file, &line)?.to_string()),
-            "Tr" => ("d", (1.0 - number(file, &line)?).to_string()),
             "illum" => {
-                let value = number(file, &line)?;
-                let model = (0..=10).find(|&model| f64::from(model).total_cmp(&value).is_eq());
-                let model: u8 = model
+                let model = words(rest).next().and_then(|word| word.parse().ok());
+                let model = model
+                    .filter(|model: &u8| *model <= 10)
                     .ok_or_else(|| invalid(file, &line, "an illumination model is 0 to 10"))?;
-                ("illum", model.to_string())
+                model.to_string()
             }
-            "map_Kd" => {
+            "map_Kd" | "map_Ke" => {
+                let (what, value) = match keyword {
+                    "map_Kd" => ("texture", "Kd"),
+                    _ => ("emission texture", "Ke"),
+                };
                 notes.push(format!(
-                    "material {name}: its texture (map_Kd) is not read, its Kd stands"
+                    "material {name}: its {what} ({keyword}) is not read, its {value} stands"
                 ));
-                ("map_Kd", format!("file {}", line.rest))
+                format!("file {rest}")
             }
-            "map_Ke" => {
-                notes.push(format!(
-                    "material {name}: its emission texture (map_Ke) is not read, its Ke stands"
-                ));
-                continue;
-            }
-            _ => continue,
+            _ => return Ok(()),
         };
         text += &format!("{keyword} {value}\n");
-    }
+        Ok(())
+    })?;
     Ok(text)
 }
 
@@ -86,12 +87,12 @@ pub(super) fn look(material: &tobj::Material) -> Look {
     }
 }
 
-/// One number (a grey) or three.
-fn color(file: &Path, line: &Line) -> Result<[f64; 3], LoadError> {
+/// Three numbers, also where there is one (a grey).
+fn color(file: &Path, line: &Line) -> Result<String, LoadError> {
     let values: Option<Vec<f64>> = words(line.rest).map(finite).collect();
     match values.as_deref() {
-        Some(&[grey]) => Ok([grey; 3]),
-        Some(&[r, g, b]) => Ok([r, g, b]),
+        Some([grey]) => Ok(format!("{grey} {grey} {grey}")),
+        Some([r, g, b]) => Ok(format!("{r} {g} {b}")),
         _ => Err(invalid(file, line, "one finite number or three")),
     }
 }

@@ -1,23 +1,20 @@
 //! Wavefront OBJ.
 //!
-//! The crate tobj reads objects, groups, faces and materials. What it cannot do stands before it (`feed`), where
-//! every line is checked, and behind it (`parts`).
+//! The crate tobj reads objects, groups, faces and materials. `scan` gives it a text that is fit for it, `parts`
+//! cuts its polygons into triangles.
 
-mod feed;
 mod parts;
+mod scan;
 
 #[cfg(test)]
 mod traps;
 
-use super::model::{Names, listed};
+use super::model::Names;
 use super::polygon::Clipper;
 use super::{FileMaterial, LoadError, Model, Object, Placement, Properties, mtl};
-use feed::Feed;
 use glam::DAffine3;
 use parts::Growing;
-use std::cell::Cell;
-use std::collections::HashMap;
-use std::fs::File;
+use scan::{Scan, note};
 use std::path::Path;
 
 /// Reads an OBJ file and its material libraries.
@@ -25,7 +22,7 @@ use std::path::Path;
 /// An `o` begins an object. So does a `g` as long as the file has had no `o`. Vertex normals and texture
 /// coordinates are passed over unread.
 pub(super) fn read(file: &Path, placement: &Placement) -> Result<Model, LoadError> {
-    let opened = File::open(file).map_err(|reason| LoadError::unreadable(file, reason))?;
+    let mut scan = Scan::of(file, placement.transform())?;
     let options = tobj::LoadOptions {
         // tobj would cut a concave polygon as a fan.
         triangulate: false,
@@ -33,130 +30,67 @@ pub(super) fn read(file: &Path, placement: &Placement) -> Result<Model, LoadErro
         ignore_points: true,
         ignore_lines: true,
     };
-    let library = Cell::default();
-    let mut feed = Feed::new(file, opened, placement.transform(), &library);
-    let loaded = tobj::load_obj_buf(&mut feed, &options, |_| Ok(library.take()));
-    if let Some(failure) = feed.failure {
-        return Err(failure);
-    }
-    let (models, materials) = loaded
-        .and_then(|(models, materials)| Ok((models, materials?)))
-        .map_err(|reason| LoadError::invalid(file, "OBJ", reason.to_string(), "see the format"))?;
+    let text = std::mem::take(&mut scan.text);
+    let (models, materials) = tobj::load_obj_buf(&mut text.as_bytes(), &options, |_| {
+        tobj::load_mtl_buf(&mut scan.library.as_bytes())
+    })
+    .and_then(|(models, materials)| Ok((models, materials?)))
+    .map_err(|reason| LoadError::invalid(file, "OBJ", reason.to_string(), "see its format"))?;
+    drop(text);
 
-    let mut sieve = feed.sieve;
-    let (materials, places) = merged(materials, &mut sieve.undefined, &mut sieve.notes);
-    let mut parts: Vec<Vec<Growing>> = sieve.objects.iter().map(|_| Vec::new()).collect();
+    let mut parts: Vec<Vec<Growing>> = scan.objects.iter().map(|_| Vec::new()).collect();
     let mut clipper = Clipper::new();
-    let mut lines = sieve.polygons.into_iter();
+    let mut lines = scan.polygons.iter().copied();
     for tobj::Model { mesh, name } in models {
-        // After the last face tobj gives one that is empty.
-        let object = name.parse().ok().and_then(|o: usize| parts.get_mut(o));
-        let Some(parts) = object.filter(|_| !mesh.indices.is_empty()) else {
+        if mesh.indices.is_empty() {
+            // So is the last one of a file without faces.
             continue;
-        };
-        let material = mesh.material_id.map(|material| places[material]);
-        let known = parts.iter().position(|p| p.part.material == material);
+        }
+        let object: usize = name.parse().expect("the scan has made it a number");
+        let parts = &mut parts[object];
+        let known = parts.iter().position(|p| p.material == mesh.material_id);
         let index = known.unwrap_or(parts.len());
         if known.is_none() {
-            parts.push(Growing::new(material));
+            parts.push(Growing::new(mesh.material_id));
         }
-        parts[index].add(
-            &mesh,
-            placement.transform(),
-            &mut clipper,
-            &mut lines,
-            &mut sieve.ragged,
-        );
+        let placement = placement.transform();
+        parts[index].add(&mesh, placement, &mut clipper, &mut lines, &mut scan.ragged);
     }
 
     // OBJ has no local axes; an object's are the file's, in the world's directions.
     let frame = placement.transform() * DAffine3::from_mat3(placement.up.turn().transpose());
+    let mut notes = scan.notes;
     let mut names = Names::default();
     let mut empty = Vec::new();
     let mut objects = Vec::new();
-    for (index, (named, parts)) in sieve.objects.into_iter().zip(parts).enumerate() {
+    for (index, (named, parts)) in scan.objects.into_iter().zip(parts).enumerate() {
         if !parts.is_empty() {
             objects.push(Object {
                 name: names.unique(&named.name),
                 properties: Properties::new(),
-                parts: parts.into_iter().map(|growing| growing.part).collect(),
+                parts: parts.into_iter().map(Growing::finish).collect(),
                 frame,
             });
         } else if index > 0 {
             empty.push(named.name);
         }
     }
-
-    let mut notes = Vec::new();
-    for (keyword, tally) in &sieve.ignored {
-        notes.push(format!(
-            "{} {keyword} elements (first in line {}) are no surfaces and ignored",
-            tally.count, tally.first
-        ));
-    }
-    if sieve.ragged.count > 0 {
+    note(&mut notes, "objects without faces are left out", &empty);
+    if scan.ragged.count > 0 {
         notes.push(format!(
             "{} faces (first in line {}) cross themselves or have no area: their triangles may not be what was meant",
-            sieve.ragged.count, sieve.ragged.first
+            scan.ragged.count, scan.ragged.first
         ));
     }
-    notes.append(&mut sieve.notes);
-    let undefined = materials.iter().filter_map(|m| {
-        let line = sieve.undefined.get(&m.name)?;
-        Some(format!("{:?} (line {line})", m.name))
+    let materials = materials.into_iter().map(|material| FileMaterial {
+        look: mtl::look(&material),
+        name: material.name,
+        properties: Properties::new(),
     });
-    for (what, which) in [
-        (
-            "materials used and defined in no .mtl file",
-            undefined.collect(),
-        ),
-        ("objects without faces are left out", empty),
-        (
-            "objects without a usemtl take the material before them",
-            sieve.inheriting,
-        ),
-    ] {
-        if !which.is_empty() {
-            notes.push(format!("{what}: {}", listed(&which)));
-        }
-    }
     Ok(Model {
         objects,
-        materials,
+        materials: materials.collect(),
         lamps: Vec::new(),
         notes,
     })
-}
-
-/// The materials by order of first mention, one for each name, and the place of each of tobj's among them. tobj
-/// keeps what is defined again as another material, and faces already read with the one before.
-fn merged(
-    found: Vec<tobj::Material>,
-    undefined: &mut HashMap<String, u64>,
-    notes: &mut Vec<String>,
-) -> (Vec<FileMaterial>, Vec<usize>) {
-    let mut materials: Vec<FileMaterial> = Vec::new();
-    let mut by_name = HashMap::new();
-    let mut places = Vec::new();
-    for material in found {
-        let look = mtl::look(&material);
-        let name = material.name;
-        let place = *by_name.entry(name.clone()).or_insert(materials.len());
-        places.push(place);
-        if place == materials.len() {
-            materials.push(FileMaterial {
-                name,
-                properties: Properties::new(),
-                look,
-            });
-            continue;
-        }
-        materials[place].look = look;
-        if undefined.remove(&name).is_none() {
-            notes.push(format!(
-                "material {name} is defined twice; the later one holds"
-            ));
-        }
-    }
-    (materials, places)
 }

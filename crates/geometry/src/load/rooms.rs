@@ -270,8 +270,8 @@ fn the_spoiled_office_is_read_as_it_is() {
 }
 
 #[test]
-fn an_independent_reader_finds_the_same_triangles_in_the_obj() {
-    // The office's polygons are convex, so that tobj's fans are right here.
+fn tobj_finds_the_same_triangles_in_the_obj_as_it_is() {
+    // Without the scan before it. The office's polygons are convex, so that tobj's fans are right here.
     let path = concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/../../scenes/meshes/blender_office/office.obj"

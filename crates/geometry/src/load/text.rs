@@ -1,9 +1,10 @@
 //! Lines of OBJ and MTL files.
 //!
-//! The crate tobj knows neither joined lines nor comments behind values, refuses what is not UTF-8, and tells
-//! no line numbers; so both formats pass through here first.
+//! The crate tobj, which reads both formats, joins no lines, takes no comments behind numbers, refuses what is not
+//! UTF-8, and says no line in its errors. So it is given what has passed here.
 
 use super::LoadError;
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -14,7 +15,6 @@ pub(super) struct Lines<'a> {
     file: &'a Path,
     reader: BufReader<File>,
     bytes: Vec<u8>,
-    text: String,
     read: u64,
 }
 
@@ -34,29 +34,33 @@ impl<'a> Lines<'a> {
             file,
             reader: BufReader::new(opened),
             bytes: Vec::new(),
-            text: String::new(),
             read: 0,
         }
     }
 
-    /// The next line that is neither empty nor a comment; none at the end.
-    pub(super) fn line(&mut self) -> Result<Option<Line<'_>>, LoadError> {
-        let mut number = self.read + 1;
-        while self.fill()? {
-            if !self.text.is_empty() && !self.text.starts_with('#') {
-                let (keyword, rest) = self
-                    .text
-                    .split_once(|c: char| c.is_ascii_whitespace())
-                    .unwrap_or((&self.text, ""));
-                return Ok(Some(Line {
-                    number,
-                    keyword,
-                    rest: rest.trim(),
-                }));
+    /// Calls `visit` with every line that is neither empty nor a comment.
+    pub(super) fn visit(
+        mut self,
+        mut visit: impl FnMut(Line) -> Result<(), LoadError>,
+    ) -> Result<(), LoadError> {
+        loop {
+            let number = self.read + 1;
+            if !self.fill()? {
+                return Ok(());
             }
-            number = self.read + 1;
+            let text = decoded(self.bytes.trim_ascii());
+            if text.is_empty() || text.starts_with('#') {
+                continue;
+            }
+            let (keyword, rest) = text
+                .split_once(|c: char| c.is_ascii_whitespace())
+                .unwrap_or((&text, ""));
+            visit(Line {
+                number,
+                keyword,
+                rest: rest.trim(),
+            })?;
         }
-        Ok(None)
     }
 
     /// Reads one line and those joined to it; false at the end of the file.
@@ -68,23 +72,19 @@ impl<'a> Lines<'a> {
                 .reader
                 .read_until(b'\n', &mut self.bytes)
                 .map_err(|reason| LoadError::unreadable(self.file, reason))?;
-            any |= read > 0;
-            self.read += u64::from(read > 0);
+            if read == 0 {
+                return Ok(any);
+            }
+            any = true;
+            self.read += 1;
             while matches!(self.bytes.last(), Some(b'\n' | b'\r')) {
                 self.bytes.pop();
             }
             match self.bytes.last_mut() {
                 Some(last) if *last == b'\\' => *last = b' ',
-                _ => break,
+                _ => return Ok(true),
             }
         }
-        let bytes = self.bytes.trim_ascii();
-        self.text.clear();
-        match std::str::from_utf8(bytes) {
-            Ok(text) => self.text.push_str(text),
-            Err(_) => self.text.extend(bytes.iter().map(|&b| char::from(b))),
-        }
-        Ok(any)
     }
 }
 
@@ -92,6 +92,14 @@ impl<'a> Lines<'a> {
 pub(super) fn words(rest: &str) -> impl Iterator<Item = &str> {
     rest.split_ascii_whitespace()
         .take_while(|word| !word.starts_with('#'))
+}
+
+/// UTF-8, or Latin-1 where it is not valid UTF-8.
+fn decoded(bytes: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Cow::Borrowed(text),
+        Err(_) => Cow::Owned(bytes.iter().map(|&b| char::from(b)).collect()),
+    }
 }
 
 #[cfg(test)]
@@ -102,11 +110,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("room.obj");
         std::fs::write(&path, bytes).unwrap();
-        let mut lines = Lines::of(&path, File::open(&path).unwrap());
         let mut seen = Vec::new();
-        while let Some(found) = lines.line().unwrap() {
-            seen.push(line(found.number, found.keyword, found.rest));
-        }
+        Lines::of(&path, File::open(&path).unwrap())
+            .visit(|line| {
+                seen.push((line.number, line.keyword.to_owned(), line.rest.to_owned()));
+                Ok(())
+            })
+            .unwrap();
         seen
     }
 

@@ -2,30 +2,27 @@
 
 use super::super::Part;
 use super::super::polygon::Clipper;
-use super::feed::Tally;
+use super::scan::Tally;
 use glam::{DAffine3, DVec3};
-use std::collections::HashMap;
 
-/// A part in the making.
+/// A part in the making: the faces of one object and one material.
 pub(super) struct Growing {
-    pub part: Part,
-    /// Where each position is in the part. tobj begins a mesh with vertices of its own at every `usemtl`; those
-    /// of one object and one material are one again here.
-    places: HashMap<[u64; 3], u32>,
-    faces: u32,
+    pub material: Option<usize>,
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    /// The face of each triangle.
+    faces: Vec<u32>,
+    count: u32,
 }
 
 impl Growing {
     pub(super) fn new(material: Option<usize>) -> Self {
         Self {
-            part: Part {
-                material,
-                positions: Vec::new(),
-                triangles: Vec::new(),
-                faces: Vec::new(),
-            },
-            places: HashMap::new(),
-            faces: 0,
+            material,
+            positions: Vec::new(),
+            triangles: Vec::new(),
+            faces: Vec::new(),
+            count: 0,
         }
     }
 
@@ -39,23 +36,10 @@ impl Growing {
         lines: &mut impl Iterator<Item = u64>,
         ragged: &mut Tally,
     ) {
-        let Part {
-            positions,
-            triangles,
-            faces,
-            ..
-        } = &mut self.part;
+        let base = self.positions.len() as u32;
         let points = mesh.positions.as_chunks::<3>().0.iter();
-        let places: Vec<u32> = points
-            .map(|&point| {
-                let position = placement.transform_point3(DVec3::from_array(point));
-                let bits = position.to_array().map(f64::to_bits);
-                *self.places.entry(bits).or_insert_with(|| {
-                    positions.push(position);
-                    positions.len() as u32 - 1
-                })
-            })
-            .collect();
+        self.positions
+            .extend(points.map(|&p| placement.transform_point3(DVec3::from_array(p))));
         // tobj gives no numbers of corners where all faces are triangles.
         let mut arities = mesh.face_arities.iter();
         let mut indices = &mesh.indices[..];
@@ -63,14 +47,14 @@ impl Growing {
         while !indices.is_empty() {
             let (face, rest) = indices.split_at(arities.next().map_or(3, |&arity| arity as usize));
             indices = rest;
-            let vertex = |index: u32| places[index as usize];
             corners.clear();
-            corners.extend(face.iter().map(|&i| positions[vertex(i) as usize]));
+            corners.extend(face.iter().map(|i| self.positions[(base + i) as usize]));
             let clipped = clipper.clip(&corners);
             let cut = clipped.triangles.iter();
-            triangles.extend(cut.map(|t| t.map(|corner| vertex(face[corner as usize]))));
-            faces.resize(triangles.len(), self.faces);
-            self.faces += 1;
+            self.triangles
+                .extend(cut.map(|t| t.map(|corner| base + face[corner as usize])));
+            self.faces.resize(self.triangles.len(), self.count);
+            self.count += 1;
             // Triangles are simple.
             if let Some(line) = (face.len() > 3).then(|| lines.next()).flatten()
                 && !clipped.simple
@@ -78,5 +62,31 @@ impl Growing {
                 ragged.add(line);
             }
         }
+    }
+
+    /// The part, with each position once: tobj begins a mesh with vertices of its own at every `usemtl`, `g`
+    /// and `o`.
+    pub(super) fn finish(mut self) -> Part {
+        let bits = |i: u32| self.positions[i as usize].to_array().map(f64::to_bits);
+        let mut order: Vec<u32> = (0..).take(self.positions.len()).collect();
+        order.sort_unstable_by_key(|&i| (bits(i), i));
+        let mut first = vec![u32::MAX; order.len()];
+        for same in order.chunk_by(|&a, &b| bits(a) == bits(b)) {
+            for &i in same {
+                first[i as usize] = same[0];
+            }
+        }
+        drop(order);
+        for corner in self.triangles.iter_mut().flatten() {
+            *corner = first[*corner as usize];
+        }
+        first.fill(u32::MAX);
+        Part::gathered(
+            self.material,
+            self.triangles,
+            self.faces,
+            &self.positions,
+            &mut first,
+        )
     }
 }

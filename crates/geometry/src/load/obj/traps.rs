@@ -263,6 +263,62 @@ fn materials_that_alternate_make_one_part_each() {
 }
 
 #[test]
+fn an_object_of_very_many_faces_stays_one_part_with_each_vertex_once() {
+    let side = 300;
+    let mut text = "o Terrain\n".to_owned();
+    for i in 0..=side {
+        for j in 0..=side {
+            text += &format!("v {i} 0 {j}\n");
+        }
+    }
+    for i in 0..side {
+        for j in 1..=side {
+            let near = i * (side + 1) + j;
+            let far = near + side + 1;
+            text += &format!("f {near} {} {} {far}\n", near + 1, far + 1);
+        }
+    }
+    let model = read(text.as_bytes()).unwrap();
+    assert_eq!((model.objects.len(), model.objects[0].parts.len()), (1, 1));
+    let part = &model.objects[0].parts[0];
+    assert_eq!(part.positions.len(), 301 * 301);
+    assert!(part.faces.iter().copied().eq((0..180_000).map(|t| t / 2)));
+    assert!((area(part) - 90_000.0).abs() < 1e-6, "{}", area(part));
+}
+
+#[test]
+fn a_material_defined_twice_is_the_later_one_and_noted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("room.obj");
+    let first = format!("mtllib one.mtl\n{SQUARE}usemtl A\nf 1 2 3\n");
+    fs::write(&path, first + "mtllib two.mtl\nusemtl A\nf 1 3 4\n").unwrap();
+    fs::write(folder.path().join("one.mtl"), "newmtl A\nKd 1\n").unwrap();
+    fs::write(folder.path().join("two.mtl"), "newmtl A\nKd 0.5\n").unwrap();
+    let model = load(&path, &Placement::default()).unwrap();
+    let [part] = &model.objects[0].parts[..] else {
+        panic!("{:?}", model.objects)
+    };
+    let Look::Mtl { kd, .. } = model.materials[part.material.unwrap()].look else {
+        panic!()
+    };
+    assert_eq!(kd, Some([0.5; 3]));
+    assert!(
+        model.notes[0].contains("material A is defined twice"),
+        "{:?}",
+        model.notes
+    );
+}
+
+#[test]
+fn a_usemtl_without_a_name_is_an_error_with_its_line() {
+    let message = error(&format!("{SQUARE}usemtl\nf 1 2 3\n"));
+    assert!(
+        message.contains("line 5") && message.contains("usemtl"),
+        "{message}"
+    );
+}
+
+#[test]
 fn a_face_that_crosses_itself_or_has_two_corners_is_noted() {
     let model = read(format!("{SQUARE}f 1 3 2 4\nf 1 2\nf 1 2 3\n").as_bytes()).unwrap();
     assert!(
