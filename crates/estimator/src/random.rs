@@ -106,10 +106,10 @@ impl Uniforms {
         let seed = mixed(self.stream ^ mixed(sequence.wrapping_mul(GOLDEN))) as u32;
         let index = (self.index & ((1 << SEQUENCE) - 1)) as u32;
         let point = sobol_burley::sample_4d(index, 0, seed);
-        // Single precision gives 23 bits; independent ones fill the other 30.
-        std::array::from_fn(|i| {
-            f64::from(point[i]) + (bits(i) >> 34) as f64 * (0.5 / (1u64 << 52) as f64)
-        })
+        // Single precision gives 23 bits; independent ones fill the other 30, two numbers' worth from each hash.
+        let (low, high) = (bits(0), bits(1));
+        let rest = [low >> 34, low & 0x3FFF_FFFF, high >> 34, high & 0x3FFF_FFFF];
+        std::array::from_fn(|i| f64::from(point[i]) + rest[i] as f64 * (0.5 / (1u64 << 52) as f64))
     }
 }
 

@@ -49,26 +49,35 @@ impl Line {
     /// crossing it where it comes nearest to that edge.
     #[inline]
     pub fn crossing(&self, triangle: &[DVec3; 3]) -> Option<f64> {
-        let [p, q, r] = triangle.map(|vertex| vertex - self.origin);
+        let (p, q, r) = (
+            triangle[0] - self.origin,
+            triangle[1] - self.origin,
+            triangle[2] - self.origin,
+        );
         // Most triangles lie well to one side.
-        let [px, qx, rx] = [p, q, r].map(|seen| seen.dot(self.across[0]));
-        if px.min(qx).min(rx) > self.slack || px.max(qx).max(rx) < -self.slack {
+        let x = self.across[0];
+        let (px, qx, rx) = (p.dot(x), q.dot(x), r.dot(x));
+        if on_one_side([px, qx, rx], self.slack) {
             return None;
         }
-        let [py, qy, ry] = [p, q, r].map(|seen| seen.dot(self.across[1]));
-        if py.min(qy).min(ry) > self.slack || py.max(qy).max(ry) < -self.slack {
+        let y = self.across[1];
+        let (py, qy, ry) = (p.dot(y), q.dot(y), r.dot(y));
+        if on_one_side([py, qy, ry], self.slack) {
             return None;
         }
         let u = px * qy - py * qx;
         let v = qx * ry - qy * rx;
         let w = rx * py - ry * px;
-        let (low, high) = (u.min(v).min(w), u.max(v).max(w));
-        if low < -self.reach && high > self.reach {
+        // Beyond an edge on one side and beyond another on the other: not even near the triangle.
+        if ((u < -self.reach) | (v < -self.reach) | (w < -self.reach))
+            & ((u > self.reach) | (v > self.reach) | (w > self.reach))
+        {
             return None;
         }
-        let [pz, qz, rz] = [p, q, r].map(|seen| seen.dot(self.direction));
+        let z = self.direction;
+        let (pz, qz, rz) = (p.dot(z), q.dot(z), r.dot(z));
         let seen = [[px, py, pz], [qx, qy, qz], [rx, ry, rz]];
-        if low < 0.0 && high > 0.0 {
+        if ((u < 0.0) | (v < 0.0) | (w < 0.0)) & ((u > 0.0) | (v > 0.0) | (w > 0.0)) {
             return self.past_edges(seen);
         }
         let triangle = Triangle {
@@ -109,6 +118,12 @@ impl Line {
         }
         first
     }
+}
+
+/// Whether all three lie beyond `slack` on the same side of zero.
+#[inline]
+fn on_one_side([a, b, c]: [f64; 3], slack: f64) -> bool {
+    ((a > slack) & (b > slack) & (c > slack)) | ((a < -slack) & (b < -slack) & (c < -slack))
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 /// are those of [`mesh`](Self::mesh), not of the mesh given.
 pub struct Surfaces {
     mesh: Mesh,
+    normals: Vec<DVec3>,
     tree: Tree,
     centre: DVec3,
     radius: f64,
@@ -59,7 +60,9 @@ impl Surfaces {
         let tree = Tree::new(&mesh, centre, radius, slack);
         let coverings = Coverings::of(&mesh, &tree, tolerance(centre, radius));
         coverings.add_to(&mesh, &mut hidden);
+        let normals = (0..mesh.len()).map(|index| mesh.triangle(index).normal());
         Ok(Self {
+            normals: normals.collect(),
             mesh,
             tree,
             centre,
@@ -190,7 +193,7 @@ impl Surfaces {
     /// Unit normal of a triangle by the order of its vertices.
     #[must_use]
     pub fn normal(&self, triangle: u32) -> DVec3 {
-        self.triangle(triangle).normal()
+        self.normals[triangle as usize]
     }
 
     /// Surface (material) index of a triangle.

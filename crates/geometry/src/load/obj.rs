@@ -27,6 +27,7 @@ pub(super) fn read(file: &Path, placement: &Placement) -> Result<Model, LoadErro
         // tobj would cut a concave polygon as a fan.
         triangulate: false,
         single_index: false,
+        // The scan has noted them, and left them out.
         ignore_points: true,
         ignore_lines: true,
     };
