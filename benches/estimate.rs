@@ -10,7 +10,10 @@ fn scene(file: &str, changes: &[(&str, &str)]) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
     let overrides: Vec<Override> = changes
         .iter()
-        .map(|(key, value)| Override { key: (*key).into(), value: (*value).into() })
+        .map(|(key, value)| Override {
+            key: (*key).into(),
+            value: (*value).into(),
+        })
         .collect();
     Scene::load(&path, &overrides).expect("a scene of this repository")
 }
@@ -25,8 +28,15 @@ fn to_one_percent(criterion: &mut Criterion, name: &str, scene: &Scene) {
 }
 
 fn runs(criterion: &mut Criterion) {
-    let unit_room = scene("scenes/unit-room.toml", &[("material.plaster.a", "0"), ("run.compare", "[]")]);
-    to_one_percent(criterion, "unit room, a = 0, nine points to 1 %", &unit_room);
+    let unit_room = scene(
+        "scenes/unit-room.toml",
+        &[("material.plaster.a", "0"), ("run.compare", "[]")],
+    );
+    to_one_percent(
+        criterion,
+        "unit room, a = 0, nine points to 1 %",
+        &unit_room,
+    );
     let office = scene("tests/data/reference_office.toml", &[("run.compare", "[]")]);
     to_one_percent(criterion, "reference office, 264 points to 1 %", &office);
 }

@@ -8,9 +8,15 @@ use std::path::Path;
 
 /// Points spread evenly through the room (an additive recurrence), a metre off its walls.
 fn points(count: u32) -> Vec<DVec3> {
-    let steps = DVec3::new(0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_1);
+    let steps = DVec3::new(
+        0.819_172_513_396_164_4,
+        0.671_043_606_703_789_2,
+        0.549_700_477_901_970_1,
+    );
     (1..=count)
-        .map(|i| DVec3::new(0.5, 0.5, 0.5) + (steps * f64::from(i)).fract() * DVec3::new(5.0, 3.0, 1.8))
+        .map(|i| {
+            DVec3::new(0.5, 0.5, 0.5) + (steps * f64::from(i)).fract() * DVec3::new(5.0, 3.0, 1.8)
+        })
         .collect()
 }
 

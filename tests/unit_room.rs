@@ -68,7 +68,7 @@ fn diffuse_room_agrees_by_gather() {
 fn black_room_has_the_direct_light_of_a_disc() {
     let direct = [1.85556e-3, 2.10057e-3, 2.30648e-3, 2.44487e-3, 2.49377e-3];
     let toml =
-        room(0.0, NINE, "samples = 65536\nestimator = 'gather'").replace("rho = 0.5", "rho = 0");
+        room(0.0, NINE, "samples = 131072\nestimator = 'gather'").replace("rho = 0.5", "rho = 0");
     for (reading, exact) in measured(&toml).iter().zip(direct) {
         // The table is rounded at the sixth digit, the disc is a polygon of 128 sides and of the disc's area.
         let (value, error) = s0(reading);

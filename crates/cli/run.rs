@@ -74,6 +74,9 @@ fn load(command: &args::Run) -> Result<Scene, Failure> {
     })
 }
 
+/// More threads than any machine has cores: beyond, starting them is all that a run would do.
+const MOST_THREADS: usize = 1024;
+
 /// Number of threads asked for, or as many as there are cores.
 fn threads(command: &args::Run) -> Result<usize, Failure> {
     let Some(text) = &command.threads else {
@@ -81,10 +84,10 @@ fn threads(command: &args::Run) -> Result<usize, Failure> {
     };
     text.parse()
         .ok()
-        .filter(|&count| count >= 1)
+        .filter(|count| (1..=MOST_THREADS).contains(count))
         .ok_or_else(|| {
             Failure::input(anyhow!(
-                "--threads {text}: must be a whole number ≥ 1, found {text:?}"
+                "--threads {text}: must be a whole number from 1 to {MOST_THREADS}, found {text:?}"
             ))
         })
 }

@@ -17,6 +17,9 @@ const PILOT_SENSORS: usize = 32;
 /// its variance grows as the inverse square of the distance, faster than a short pilot can tell.
 const CLEARANCE: f64 = 0.2;
 
+/// Nearer than this, in the same measure, errors are not only large but wrong.
+const TRUSTED: f64 = 0.02;
+
 /// An estimator with the reason for it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Chosen {
@@ -157,6 +160,25 @@ pub(crate) fn mirrorlike_names(materials: &[Material]) -> Vec<&str> {
         .collect();
     names.dedup();
     names
+}
+
+/// Says if a local estimate was asked for where its variance, and so its error bar, cannot be trusted.
+pub(crate) fn erratic<const N: usize>(engine: &Engine<N>, estimator: Estimator) -> Option<String> {
+    if estimator != Estimator::Local {
+        return None;
+    }
+    let surfaces = engine.passes.main.surfaces;
+    let free = || engine.receivers.iter().filter(|r| !r.enclosed);
+    let near = free()
+        .filter(|receiver| clearance(surfaces, receiver) < TRUSTED)
+        .count();
+    (near > 0).then(|| {
+        format!(
+            "local: {near} of {} sensor points stand so near a surface that values and errors there cannot be trusted: \
+             the variance of a local estimate grows without bound towards a surface; gather has no such limit",
+            free().count()
+        )
+    })
 }
 
 /// The paths that an estimator cannot see in this scene, one sentence each.

@@ -164,7 +164,7 @@ impl<'a> Emitters<'a> {
         let entry = self.entry(choice, which);
         let Some(&triangle) = self.triangles.get(entry) else {
             let index = entry - self.triangles.len();
-            let mut incoming = self.from_source(index, point)?;
+            let mut incoming = self.light_of_source(index, point)?;
             incoming.irradiance *= total / source_flux(&self.sources[index], self.surfaces);
             return Some(incoming);
         };
@@ -190,7 +190,7 @@ impl<'a> Emitters<'a> {
     }
 
     /// Light that the source without geometry of that number sends to `point` were nothing between them.
-    pub(crate) fn from_source(&self, index: usize, point: DVec3) -> Option<Incoming<'a>> {
+    pub(crate) fn light_of_source(&self, index: usize, point: DVec3) -> Option<Incoming<'a>> {
         let source = &self.sources[index];
         let (from, toward, irradiance) = match &source.kind {
             SourceKind::Point {
@@ -222,6 +222,14 @@ impl<'a> Emitters<'a> {
     /// Number of sources without geometry.
     pub(crate) fn source_count(&self) -> usize {
         self.sources.len()
+    }
+
+    /// Where the sources without geometry stand, those at infinity left out.
+    pub(crate) fn source_positions(&self) -> impl Iterator<Item = DVec3> {
+        self.sources.iter().filter_map(|source| match source.kind {
+            SourceKind::Point { position, .. } => Some(position),
+            SourceKind::Distant { .. } => None,
+        })
     }
 
     /// Start of a walk that carries the flux of the scene divided by its own probability.

@@ -3,6 +3,7 @@
 use crate::evaluate::at_sensor;
 use crate::receiver::Receiver;
 use crate::trace::{Medium, unobstructed};
+use glam::DVec3;
 
 /// Irradiance Stokes vector at each receiver from all point, spot and distant sources that it sees, in unit/m².
 pub(crate) fn from_sources<const N: usize>(
@@ -21,7 +22,7 @@ fn from_sources_at<const N: usize>(medium: &Medium, receiver: &Receiver) -> [f64
         return sum;
     }
     for index in 0..medium.emitters.source_count() {
-        let Some(incoming) = medium.emitters.from_source(index, receiver.origin) else {
+        let Some(incoming) = medium.emitters.light_of_source(index, receiver.origin) else {
             continue;
         };
         let cos = incoming.toward.dot(receiver.normal);
@@ -34,4 +35,17 @@ fn from_sources_at<const N: usize>(medium: &Medium, receiver: &Receiver) -> [f64
         }
     }
     sum
+}
+
+/// Says if sensor points lie in point sources, where their irradiance has no bound.
+pub(crate) fn singular(medium: &Medium, receivers: &[Receiver]) -> Option<String> {
+    let reach = medium.surfaces.tolerance();
+    let within = |receiver: &&Receiver| {
+        let near = |p: DVec3| p.distance(receiver.origin) <= reach;
+        !receiver.enclosed && medium.emitters.source_positions().any(near)
+    };
+    let count = receivers.iter().filter(within).count();
+    (count > 0).then(|| {
+        format!("{count} sensor points lie in a point source: its direct light, which has no bound there, is left out")
+    })
 }

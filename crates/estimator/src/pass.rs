@@ -77,7 +77,7 @@ pub(crate) fn is_mirrorlike(material: &Material) -> bool {
 /// True if anything reflects like a mirror.
 #[must_use]
 pub(crate) fn has_mirrors(materials: &[Material]) -> bool {
-    materials.iter().any(|m| is_mirrorlike(m))
+    materials.iter().any(is_mirrorlike)
 }
 
 /// The materials of a model: without their mirror-like part for the diffuse one.

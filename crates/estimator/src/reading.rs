@@ -83,7 +83,7 @@ impl<'a> Readings<'a> {
         };
         let exact = free.iter().map(|&s| self.exact[s][0]).sum::<f64>() / count;
         let main = tally.estimate(|means| mean(means, 0));
-        let paired = |channel| Paired::new(tally, exact, channel, &mean);
+        let paired = |channel| Paired::new(tally, exact, channel, mean);
         Group {
             readings: range.map(|sensor| self.reading(tally, sensor)).collect(),
             mean: main.mean + exact,

@@ -52,17 +52,22 @@ impl Receiver {
     }
 }
 
-/// The point, or where surfaces lie within their tolerance of it, the near side of the last of them along the normal.
+/// Cosine below which a surface stands along a sensor's normal, and has no side that the normal tells.
+const ALONG: f64 = 1e-6;
+
+/// The point, moved off every surface that it touches: to the side of the sensor's normal, or where a surface stands
+/// along the normal, as the walls do at the edge of a floor, to the side of the surface's own.
 fn free_of_surfaces(surfaces: &Surfaces, position: DVec3, normal: DVec3) -> DVec3 {
-    let reach = surfaces.tolerance();
+    let touched = surfaces.touching(position);
     let mut free = position;
-    let mut from = position - normal * reach;
-    while let Some(hit) = surfaces.nearest(from, normal) {
-        if (hit.position - position).dot(normal) > reach {
-            break;
+    // In a corner, moving off one surface may come nearer to another: a few rounds settle it.
+    for _ in 0..4 {
+        for &triangle in &touched {
+            let own = surfaces.normal(triangle);
+            let side = if own.dot(normal) < -ALONG { -own } else { own };
+            let height = (free - surfaces.triangle(triangle).vertices[0]).dot(side);
+            free += side * (surfaces.offset() - height).max(0.0);
         }
-        free = hit.position + normal * surfaces.offset();
-        from = free;
     }
     free
 }

@@ -1,6 +1,6 @@
 //! A run: replicas taken further in steps until a stopping rule holds.
 
-use crate::choose::{blind_spots, choose};
+use crate::choose::{blind_spots, choose, erratic};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::exact;
@@ -117,6 +117,8 @@ fn run_with<const N: usize>(
 
     let relative_error_max = readings.relative_error(&tally);
     let mut warnings = blind_spots(&engine.passes.main, chosen.estimator);
+    warnings.extend(erratic(&engine, chosen.estimator));
+    warnings.extend(exact::singular(&engine.passes.main, &receivers));
     if truncated > 0 {
         warnings.push(format!(
             "{truncated} walks were cut off after {LONGEST} reflections: what they still carried is missing"

@@ -138,6 +138,30 @@ impl Surfaces {
                 .any(|covering| line.crossing(&self.triangle(covering).vertices).is_some())
     }
 
+    /// The triangles that lie within [`tolerance`](Self::tolerance) of a point (in m) and exist there.
+    #[must_use]
+    pub fn touching(&self, point: DVec3) -> Vec<u32> {
+        let tolerance = self.tolerance();
+        let mut touched = Vec::new();
+        self.tree.near(&[point], tolerance, |index| {
+            let normal = self.normal(index);
+            let [a, b, c] = self.triangle(index).vertices;
+            let inside = |from: DVec3, to: DVec3| {
+                normal.cross(to - from).dot(point - from) >= -tolerance * from.distance(to)
+            };
+            if (point - a).dot(normal).abs() <= tolerance
+                && inside(a, b)
+                && inside(b, c)
+                && inside(c, a)
+                && self.exposed(index, point)
+            {
+                touched.push(index);
+            }
+        });
+        touched.sort_unstable();
+        touched
+    }
+
     /// Distance in m by which a ray's end is moved off its surface along the normal: 2⁻⁴⁰ (|centre| + radius).
     ///
     /// Four times the thickness that surfaces have for rays, and some 10³ times the rounding error of a hit: it leaves no

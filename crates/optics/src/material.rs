@@ -72,12 +72,17 @@ impl Material {
 
     /// The least representation that is exact for this material.
     ///
+    /// Without a mirror-like part, or where the index is the room's own, nothing is mirrored.
     /// A dielectric met from the thinner side and the ideal mirror do not turn U into V; metals and
     /// total reflection do.
     #[must_use]
     pub fn representation(&self) -> Representation {
         match *self {
-            Self::Mixture { fraction: 0.0, .. } => Representation::Intensity,
+            Self::Mixture { fraction: 0.0, .. }
+            | Self::Mixture {
+                index: Index::Relative { n: 1.0, k: 0.0 },
+                ..
+            } => Representation::Intensity,
             Self::Mixture {
                 index: Index::Relative { n, k },
                 ..
