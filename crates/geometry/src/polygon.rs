@@ -125,6 +125,10 @@ impl Polygon {
 
     /// Cuts another polygon out of this one: the pieces left, all convex.
     pub fn minus(self, other: &Self) -> Vec<Self> {
+        // Cutting along the sides of one that lies elsewhere would only multiply pieces.
+        if self.separates(other, 0.0) || other.separates(&self, 0.0) {
+            return vec![self];
+        }
         let whole = self.area();
         let mut pieces = Vec::new();
         let mut rest = self;

@@ -115,11 +115,12 @@ mod tests {
             ("kind = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]", 12),
             (
                 "kind = \"disc\"\ncentre = [0, 0, 0]\nnormal = [0, 0, 1]\nradius = 1",
-                128,
+                // A polygon of n corners is n − 2 triangles.
+                126,
             ),
             (
                 "kind = \"disc\"\ncentre = [0, 0, 0]\nnormal = [0, 0, 1]\nradius = 1\nsegments = 6",
-                6,
+                4,
             ),
             (
                 "kind = \"sphere\"\ncentre = [0, 0, 0]\nradius = 1",
