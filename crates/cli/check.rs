@@ -53,6 +53,12 @@ fn text(report: &Report) -> String {
         report.representation_reason,
         significant(100.0 * report.escaping, 2)
     );
+    if !report.coincidences.is_empty() {
+        text += "\nSurfaces in the same place\n";
+    }
+    for pair in &report.coincidences {
+        text += &format!("  {pair}\n");
+    }
     text += &match report.warnings.len() {
         0 => "\nNo defects, no warnings\n".to_owned(),
         count => format!("\nDefects and warnings: {count}\n"),

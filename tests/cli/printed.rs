@@ -101,7 +101,6 @@ fn results_go_to_a_folder_of_the_scenes_name_by_default() {
 
 /// A lamp that lies flush in a ceiling is the documented way to place one: it opens no hole.
 #[test]
-#[ignore = "the rim of a lamp in a ceiling is told as a hole"]
 fn a_lamp_flush_in_a_ceiling_is_no_defect() {
     let scene = crate::experiment::repository("scenes/unit-room.toml");
     let output = super::malus(&["check", super::word(&scene)])

@@ -208,7 +208,6 @@ fn a_useless_command_line_is_a_bad_argument() {
 
 /// Where nothing absorbs, light never dies away and no answer exists: the run has to say so, or to stop by its rules.
 #[test]
-#[ignore = "walks in a closed room that absorbs nothing do not end, not even by Ctrl-C or --seconds"]
 fn a_room_that_absorbs_nothing_does_not_run_for_ever() {
     for white in ["rho = 1", "rho = 0.5\na = 1\nn = inf"] {
         let folder = Folder::new(room_with("rho = 0.5", white).as_bytes(), &[]);

@@ -70,6 +70,12 @@ impl Material {
         (1.0 - fraction) * rho
     }
 
+    /// Whether no light is lost at any angle: all that is not mirrored at normal incidence is scattered.
+    #[must_use]
+    pub fn is_lossless(&self) -> bool {
+        self.albedo() + self.mirror(1.0, 0.0).mean() >= 1.0 - 1e-12
+    }
+
     /// The least representation that is exact for this material.
     ///
     /// Without a mirror-like part, or where the index is the room's own, nothing is mirrored.

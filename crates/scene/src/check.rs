@@ -33,6 +33,8 @@ pub struct Report {
     pub representation_reason: String,
     /// Share of directions from the free sensor points, each over its hemisphere, that leave the geometry.
     pub escaping: f64,
+    /// Surfaces that lie in one another, each pair with its area.
+    pub coincidences: Vec<String>,
     /// Defects and warnings, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -119,7 +121,8 @@ impl Report {
             } else {
                 reason.clone()
             },
-            escaping: escaping(scene),
+            escaping: escaping(&scene.surfaces, &scene.sensors),
+            coincidences: scene.coincidences.clone(),
             warnings: scene.warnings.clone(),
         }
     }
@@ -229,23 +232,23 @@ fn span(positions: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
 /// Share of directions from the free points that leave the geometry: 64 a point, from at most 256 points evenly picked.
 ///
 /// The directions are a spiral of equal steps in height over the upper hemisphere, turned by the golden ratio.
-fn escaping(scene: &Scene) -> f64 {
+pub(crate) fn escaping(surfaces: &Surfaces, sensors: &[Sensor]) -> f64 {
     const POINTS: usize = 256;
     const DIRECTIONS: u32 = 64;
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let free = scene.sensors.iter().flat_map(|sensor| &sensor.points);
+    let free = sensors.iter().flat_map(|sensor| &sensor.points);
     let free: Vec<_> = free.filter(|point| !point.enclosed).collect();
     let step = free.len().div_ceil(POINTS).max(1);
     let (mut escaped, mut all) = (0_u32, 0_u32);
     for point in free.iter().step_by(step) {
-        let from = point.position + scene.surfaces.offset() * point.normal;
+        let from = point.position + surfaces.offset() * point.normal;
         let (x, y) = point.normal.any_orthonormal_pair();
         for index in 0..DIRECTIONS {
             let height = (f64::from(index) + 0.5) / f64::from(DIRECTIONS);
             let (sin, cos) = libm::sincos(TAU * GOLDEN * f64::from(index));
             let reach = (1.0 - height * height).sqrt();
             let direction = reach * (cos * x + sin * y) + height * point.normal;
-            escaped += u32::from(scene.surfaces.escapes(from, direction));
+            escaped += u32::from(surfaces.escapes(from, direction));
             all += 1;
         }
     }

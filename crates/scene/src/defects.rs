@@ -4,12 +4,19 @@ use crate::Sensor;
 use glam::DVec3;
 use malus_geometry::defects::{Edges, ObjectDefects, Report};
 use malus_geometry::{Coincidence, Surfaces};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// How many names or places a sentence lists before it counts the rest.
 const LISTED: usize = 5;
 
 /// One sentence for each kind of defect and object, with a place to look at.
-pub(crate) fn warnings(report: &Report, objects: &[String], sensors: &[Sensor]) -> Vec<String> {
+pub(crate) fn warnings(
+    report: &Report,
+    surfaces: &Surfaces,
+    objects: &[String],
+    sensors: &[Sensor],
+) -> Vec<String> {
+    let flush = flush(surfaces);
     let name = |object: u32| &objects[object as usize];
     let mut warnings = Vec::new();
     for found in &report.objects {
@@ -35,7 +42,11 @@ pub(crate) fn warnings(report: &Report, objects: &[String], sensors: &[Sensor]) 
             tell(edges.count, &format!("{what}, {}", longest(edges)));
         }
     }
-    warnings.extend(boundary(&report.objects, objects));
+    let sheets = report
+        .objects
+        .iter()
+        .filter(|found| !flush.contains(&found.object));
+    warnings.extend(boundary(&sheets.collect::<Vec<_>>(), objects));
     for solid in &report.inside_out {
         let holds = |point: DVec3| point.cmpge(solid.min).all() && point.cmple(solid.max).all();
         let mut points = sensors.iter().flat_map(|sensor| &sensor.points);
@@ -60,7 +71,12 @@ pub(crate) fn warnings(report: &Report, objects: &[String], sensors: &[Sensor]) 
             place(turned.at)
         ));
     }
-    for hole in report.holes.iter().take(LISTED) {
+    let holes: Vec<_> = report
+        .holes
+        .iter()
+        .filter(|hole| !hole.objects.iter().all(|object| flush.contains(object)))
+        .collect();
+    for hole in holes.iter().take(LISTED) {
         let names: Vec<String> = hole.objects.iter().map(|it| name(*it).clone()).collect();
         warnings.push(format!(
             "the geometry is open along a rim of {:.3} m around {:.4} m² near {} (of {}): a hole, or a single sheet",
@@ -70,11 +86,31 @@ pub(crate) fn warnings(report: &Report, objects: &[String], sensors: &[Sensor]) 
             listed(&names)
         ));
     }
-    if report.holes.len() > LISTED {
-        let more = report.holes.len() - LISTED;
+    if holes.len() > LISTED {
+        let more = holes.len() - LISTED;
         warnings.push(format!("the geometry is open along {more} smaller rims"));
     }
     warnings
+}
+
+/// Objects that lie flush in others with all of their area, as a lamp does in a ceiling: their rims are no holes.
+fn flush(surfaces: &Surfaces) -> BTreeSet<u32> {
+    let mut hiding: BTreeMap<u32, f64> = BTreeMap::new();
+    for pair in surfaces.coincidences() {
+        *hiding.entry(pair.covering_object).or_default() += pair.area;
+    }
+    let mesh = surfaces.mesh();
+    let mut areas: BTreeMap<u32, f64> = BTreeMap::new();
+    for (index, object) in mesh
+        .objects
+        .iter()
+        .enumerate()
+        .filter(|(_, object)| hiding.contains_key(object))
+    {
+        *areas.entry(*object).or_default() += mesh.triangle(index).area();
+    }
+    let whole = |(object, area): (&u32, &f64)| (hiding[object] >= 0.999 * area).then_some(*object);
+    areas.iter().filter_map(whole).collect()
 }
 
 /// Surfaces that lie in one another, each pair with its area.
@@ -99,7 +135,7 @@ pub(crate) fn coincidences(
 }
 
 /// One sentence for all boundary edges, because single sheets have them rightly.
-fn boundary(found: &[ObjectDefects], objects: &[String]) -> Option<String> {
+fn boundary(found: &[&ObjectDefects], objects: &[String]) -> Option<String> {
     let open = || found.iter().filter(|object| object.boundary.count > 0);
     let names: Vec<String> = open()
         .map(|object| objects[object.object as usize].clone())
@@ -146,7 +182,8 @@ mod tests {
 
     fn told(mesh: &Mesh, sensors: &[Sensor]) -> String {
         let objects = ["Room".to_owned(), "Fin".to_owned()];
-        warnings(&defects::of(mesh), &objects, sensors).join("\n")
+        let surfaces = Surfaces::new(mesh.clone()).unwrap();
+        warnings(&defects::of(mesh), &surfaces, &objects, sensors).join("\n")
     }
 
     fn room(inward: bool) -> Mesh {

@@ -97,6 +97,26 @@ pub enum Error {
         /// Why not, with the path looked at.
         reason: Box<LoadError>,
     },
+    /// A mesh file with nothing in it.
+    #[error(
+        "{at}: {file} has no faces, no lights and no sensors in it: select the room and export again, or leave the file out"
+    )]
+    EmptyMesh {
+        /// Place of the `file` value.
+        at: String,
+        /// The file as looked for.
+        file: String,
+    },
+    /// A closed room without loss.
+    #[error(
+        "{path}: nothing absorbs light and none leaves: every surface reflects all of it ({materials}), so the illuminance grows without bound; give some material rho below 1"
+    )]
+    NoLoss {
+        /// The scene file.
+        path: String,
+        /// Names of the materials.
+        materials: String,
+    },
     /// A name or glob in the scene file that nothing answers to.
     #[error("{at}: no {what} is called {name:?}{hint}")]
     NoMatch {

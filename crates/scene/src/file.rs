@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::material::library::Library;
 use crate::overrides::Override;
 use crate::place::Located;
-use crate::reader::{Field, Reader};
+use crate::reader::{Field, Reader, WHOLE};
 use crate::sensor::described::Described;
 use crate::settings::Settings;
 use crate::shape::Shape;
@@ -26,7 +26,6 @@ pub(crate) struct SceneFile {
     pub(crate) sources: Vec<Source>,
     pub(crate) sensors: Vec<Described>,
     pub(crate) settings: Settings,
-    pub(crate) warnings: Vec<String>,
 }
 
 /// One `[[mesh]]`.
@@ -36,6 +35,8 @@ pub(crate) struct MeshFile {
     /// The file from where the program runs.
     pub(crate) path: PathBuf,
     pub(crate) placement: Placement,
+    /// Whether the lamps in the file count.
+    pub(crate) lights: bool,
 }
 
 impl SceneFile {
@@ -51,8 +52,7 @@ impl SceneFile {
     /// Reads a parsed document that stands at `path`.
     pub(crate) fn typed(document: Node, path: &Path) -> Result<Self, Error> {
         let folder = path.parent().unwrap_or(Path::new(""));
-        let mut warnings = Vec::new();
-        let mut table = Reader::new("the scene file".into(), document)?;
+        let mut table = Reader::new(WHOLE.into(), document)?;
         // All keys are asked for first, so that a misspelt table is told before what is in the others.
         let scene = table.take("scene");
         let meshes = table.take("mesh");
@@ -73,8 +73,7 @@ impl SceneFile {
             library: Library::read(materials)?,
             sources: each(sources, "source", Source::read)?,
             sensors: each(sensors, "sensor", |_, field| Described::read(field, folder))?,
-            settings: Settings::read(run, &mut warnings)?,
-            warnings,
+            settings: Settings::read(run)?,
         })
     }
 }
@@ -127,6 +126,7 @@ fn mesh(field: Field, folder: &Path) -> Result<MeshFile, Error> {
         Some(field) => field.vector()?,
         None => DVec3::ZERO,
     };
+    let lights = table.flag_or("lights", true)?;
     table.finish()?;
     Ok(MeshFile {
         path: folder.join(&file.value),
@@ -136,6 +136,7 @@ fn mesh(field: Field, folder: &Path) -> Result<MeshFile, Error> {
             up,
             translate,
         },
+        lights,
     })
 }
 

@@ -7,7 +7,7 @@ use crate::polarisation::UNPOLARISED;
 use crate::properties::{Custom, Holder, Marker};
 use crate::sensor::marker::marked;
 use crate::source::{Distribution, Source, SourceKind};
-use malus_geometry::load::{Lamp, LampKind, Model, Object, load};
+use malus_geometry::load::{Lamp, LampKind, Look, Model, Object, load};
 
 /// A mesh file, loaded.
 pub(crate) struct Import {
@@ -42,7 +42,21 @@ impl Import {
             at: mesh.file.at.to_string(),
             reason: Box::new(error),
         })?;
-        Self::of(mesh.file.value.clone(), model)
+        let mut import = Self::of(mesh.file.value.clone(), model)?;
+        let faceless = |object: &Object| object.parts.iter().all(|part| part.triangles.is_empty());
+        let means_nothing = |(index, object): (usize, &Object)| {
+            matches!(import.role(index), Role::Nothing | Role::Geometry) && faceless(object)
+        };
+        if import.lamps.is_empty() && import.model.objects.iter().enumerate().all(means_nothing) {
+            return Err(Error::EmptyMesh {
+                at: mesh.file.at.to_string(),
+                file: mesh.path.display().to_string(),
+            });
+        }
+        if !mesh.lights {
+            import.lamps.clear();
+        }
+        Ok(import)
     }
 
     /// Gives a meaning to a `model` that comes from `file`.
@@ -110,11 +124,36 @@ impl Import {
         format!("object {:?} ({})", object.name, self.file)
     }
 
+    /// Whether this is a glTF with nothing in it that an exporter leaves out unless told to write it.
+    fn is_bare_gltf(&self) -> bool {
+        let model = &self.model;
+        let is_gltf = |look: &Look| matches!(look, Look::Gltf { .. });
+        model.lamps.is_empty()
+            && model
+                .materials
+                .iter()
+                .any(|material| is_gltf(&material.look))
+            && model
+                .materials
+                .iter()
+                .all(|material| material.properties.is_empty())
+            && model
+                .objects
+                .iter()
+                .all(|object| object.properties.is_empty())
+    }
+
     /// What the loader left aside, and custom properties that have no effect.
     pub(crate) fn warnings(&self) -> Vec<String> {
         let notes = self.model.notes.iter();
         let mut warnings: Vec<String> =
             notes.map(|note| format!("{}: {note}", self.file)).collect();
+        if self.is_bare_gltf() {
+            warnings.push(format!(
+                "{}: no custom property and no light is in it; where it comes from Blender and should have them, export it with Include > Custom Properties and Punctual Lights ticked, and with Mesh > Apply Modifiers, without which arrays, mirrors and bevels are missing too",
+                self.file
+            ));
+        }
         for (index, (object, custom)) in self.model.objects.iter().zip(&self.objects).enumerate() {
             if custom.is_material() && self.role(index) == Role::Nothing {
                 warnings.push(format!(

@@ -18,6 +18,11 @@ pub(crate) fn nearest<'a>(
     best.map(|(_, candidate)| candidate)
 }
 
+/// Whether one spelling may well be meant by the other: two thirds of it agree.
+pub(crate) fn alike(found: &str, known: &str) -> bool {
+    strsim::normalized_damerau_levenshtein(&found.to_lowercase(), &known.to_lowercase()) > 0.66
+}
+
 /// End of an error message: the nearest spelling, and all of them where they are few.
 pub(crate) fn hint<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     const FEW: usize = 16;

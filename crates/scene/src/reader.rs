@@ -3,9 +3,12 @@
 use crate::allowed::Allowed;
 use crate::document::{Entry, Node, Value};
 use crate::error::Error;
-use crate::nearest::hint;
+use crate::nearest::{alike, hint};
 use crate::place::{Located, Place};
 use glam::DVec3;
+
+/// Name of the table that is the whole file.
+pub(crate) const WHOLE: &str = "the scene file";
 
 /// A table that is being read.
 pub(crate) struct Reader {
@@ -46,18 +49,40 @@ impl Reader {
         self.asked.push(key);
         let index = self.entries.iter().position(|entry| entry.key == key)?;
         Some(Field {
-            key: format!("{} {key}", self.name),
+            key: self.path_of(key),
             node: self.entries.remove(index).node,
         })
     }
 
+    /// A key with its table, as messages name it: `[run] samples`, `shape.0 min`, of the whole file the key alone.
+    fn path_of(&self, key: &str) -> String {
+        if self.name == WHOLE {
+            format!("[{key}]")
+        } else {
+            format!("{} {key}", self.name)
+        }
+    }
+
     /// Takes the value of `key`, which has to be there and to be as `expected`.
     pub(crate) fn require(&mut self, key: &'static str, expected: &str) -> Result<Field, Error> {
-        self.take(key).ok_or_else(|| Error::MissingKey {
-            at: self.at.to_string(),
-            table: self.name.clone(),
-            key: key.to_owned(),
-            expected: expected.to_owned(),
+        if let Some(field) = self.take(key) {
+            return Ok(field);
+        }
+        // A key that is left over and looks like this one is more likely misspelt than the other missing.
+        let misspelt = self.entries.iter().find(|entry| alike(&entry.key, key));
+        Err(match misspelt {
+            Some(entry) => Error::UnknownKey {
+                at: entry.at.to_string(),
+                table: self.name.clone(),
+                key: entry.key.clone(),
+                hint: hint(&entry.key, [key]),
+            },
+            None => Error::MissingKey {
+                at: self.at.to_string(),
+                table: self.name.clone(),
+                key: key.to_owned(),
+                expected: expected.to_owned(),
+            },
         })
     }
 
@@ -233,8 +258,16 @@ impl Field {
     pub(crate) fn direction(&self) -> Result<DVec3, Error> {
         let vector = self.vector()?;
         unit(vector).ok_or_else(|| {
-            let found = Value::Text(format!("{} {} {}", vector.x, vector.y, vector.z));
-            bad(&self.node.at, &self.key, &found, "a direction, not zero")
+            let mut error = bad(
+                &self.node.at,
+                &self.key,
+                &self.node.value,
+                "a direction, not zero",
+            );
+            if let Error::BadValue { found, .. } = &mut error {
+                *found = format!("[{}, {}, {}]", vector.x, vector.y, vector.z);
+            }
+            error
         })
     }
 

@@ -34,6 +34,8 @@ pub struct Scene {
     pub need: Need,
     /// Names of objects, by the index that `surfaces.object(triangle)` gives.
     pub objects: Vec<String>,
+    /// Surfaces that lie in one another, each pair with its area: ordinary where a thing stands on another.
+    pub coincidences: Vec<String>,
     /// What a careful user would want to know, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -44,8 +46,8 @@ impl Scene {
     /// # Errors
     /// The first things found wrong, each with its place, what was found and what is allowed.
     pub fn load(path: &Path, overrides: &[Override]) -> Result<Self, Error> {
-        let mut file = SceneFile::read(path, overrides)?;
-        let mut warnings = std::mem::take(&mut file.warnings);
+        let file = SceneFile::read(path, overrides)?;
+        let mut warnings = Vec::new();
         let imports = each(&file.meshes, Import::load)?;
         for import in &imports {
             warnings.extend(import.warnings());
@@ -87,9 +89,15 @@ impl Scene {
         }
         enclosed::mark(&mut sensors, &surfaces, &materials, &sources);
 
-        warnings.extend(defects::warnings(&flaws, &assembly.objects, &sensors));
+        without_loss(path, &surfaces, &materials, &sensors)?;
+        warnings.extend(defects::warnings(
+            &flaws,
+            &surfaces,
+            &assembly.objects,
+            &sensors,
+        ));
         let labels: Vec<String> = materials.iter().map(|it| it.name.clone()).collect();
-        warnings.extend(defects::coincidences(&surfaces, &assembly.objects, &labels));
+        let coincidences = defects::coincidences(&surfaces, &assembly.objects, &labels);
         warnings.extend(odd_extent(&surfaces));
         let need = Need::of(file.settings.model, &materials, &sources);
         warnings.extend(too_little(&file.settings, &need));
@@ -103,6 +111,7 @@ impl Scene {
             settings: file.settings,
             need,
             objects: assembly.objects,
+            coincidences,
             warnings,
         })
     }
@@ -126,6 +135,30 @@ fn each<I, T>(items: &[I], read: impl Fn(&I) -> Result<T, Error>) -> Result<Vec<
         }
     }
     Error::all(errors).map(|()| good)
+}
+
+/// Refuses a closed scene in which light is never lost: there is no steady state to compute.
+fn without_loss(
+    path: &Path,
+    surfaces: &Surfaces,
+    materials: &[Material],
+    sensors: &[Sensor],
+) -> Result<(), Error> {
+    let lossless = |material: &Material| material.two_sided && material.optics.is_lossless();
+    if surfaces.is_empty()
+        || !materials.iter().all(lossless)
+        || crate::check::escaping(surfaces, sensors) > 0.0
+    {
+        return Ok(());
+    }
+    let names: Vec<String> = materials
+        .iter()
+        .map(|material| material.name.clone())
+        .collect();
+    Err(Error::NoLoss {
+        path: path.display().to_string(),
+        materials: defects::listed(&names),
+    })
 }
 
 /// One sentence for all materials of OBJ files whose fields say nothing of mirror-like reflection.

@@ -55,8 +55,8 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Reads `[run]`, where it is given; warnings go to `warnings`.
-    pub(crate) fn read(table: Option<Field>, warnings: &mut Vec<String>) -> Result<Self, Error> {
+    /// Reads `[run]`, where it is given.
+    pub(crate) fn read(table: Option<Field>) -> Result<Self, Error> {
         let mut settings = Self {
             model: Model::Polarised,
             compare_scalar: true,
@@ -69,11 +69,8 @@ impl Settings {
             seed: 1,
         };
         if let Some(table) = table {
-            settings.fill(table.table()?, warnings)?;
+            settings.fill(table.table()?)?;
         }
-        // A model is compared only with simpler ones: polarised, scalar, diffuse.
-        settings.compare_scalar &= settings.model == Model::Polarised;
-        settings.compare_diffuse &= settings.model != Model::Diffuse;
         let limits = [settings.relative_error, settings.seconds];
         if settings.samples.is_none() && limits == [None, None] {
             settings.relative_error = Some(0.01);
@@ -81,7 +78,7 @@ impl Settings {
         Ok(settings)
     }
 
-    fn fill(&mut self, mut table: Reader, warnings: &mut Vec<String>) -> Result<(), Error> {
+    fn fill(&mut self, mut table: Reader) -> Result<(), Error> {
         if let Some(field) = table.take("model") {
             self.model = field.choice(&[
                 ("polarised", Model::Polarised),
@@ -90,7 +87,7 @@ impl Settings {
             ])?;
         }
         if let Some(field) = table.take("compare") {
-            self.compare(field, warnings)?;
+            self.compare(field)?;
         }
         if let Some(field) = table.take("representation") {
             self.representation = field.choice(&[
@@ -130,25 +127,14 @@ impl Settings {
         table.finish()
     }
 
-    fn compare(&mut self, field: Field, warnings: &mut Vec<String>) -> Result<(), Error> {
+    fn compare(&mut self, field: Field) -> Result<(), Error> {
         self.compare_scalar = false;
         for item in field.list()? {
-            let at = item.at().clone();
             let other = item.choice(&[("scalar", Model::Scalar), ("diffuse", Model::Diffuse)])?;
             if other == Model::Scalar {
                 self.compare_scalar = true;
             } else {
                 self.compare_diffuse = true;
-            }
-            let simpler = match self.model {
-                Model::Polarised => true,
-                Model::Scalar => other == Model::Diffuse,
-                Model::Diffuse => false,
-            };
-            if !simpler {
-                warnings.push(format!(
-                    "{at}: a model is compared only with simpler ones (polarised, scalar, diffuse in this order); this comparison is left out"
-                ));
             }
         }
         Ok(())
@@ -162,9 +148,7 @@ mod tests {
 
     fn read(text: &str) -> Result<Settings, String> {
         let node = Node::document(&"room.toml".into(), text).unwrap();
-        let mut warnings = Vec::new();
-        Settings::read(Some(Field::new("[run]".into(), node)), &mut warnings)
-            .map_err(|error| error.to_string())
+        Settings::read(Some(Field::new("[run]".into(), node))).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -185,9 +169,9 @@ mod tests {
     }
 
     #[test]
-    fn a_model_is_not_compared_with_itself() {
+    fn any_model_is_compared_with_what_is_asked_for() {
         let settings = read("model = \"scalar\"\ncompare = [\"scalar\", \"diffuse\"]").unwrap();
-        assert!(!settings.compare_scalar && settings.compare_diffuse);
+        assert!(settings.compare_scalar && settings.compare_diffuse);
     }
 
     #[test]

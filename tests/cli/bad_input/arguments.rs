@@ -53,8 +53,9 @@ fn an_option_is_judged_like_the_file_and_told_as_typed() {
             "stokes",
             "\"intensity\" or \"linear\" or \"full\"",
         ),
-        ("--threads", "0", "a whole number ≥ 1"),
-        ("--threads", "two", "a whole number ≥ 1"),
+        ("--threads", "0", "a whole number from 1 to 1024"),
+        ("--threads", "two", "a whole number from 1 to 1024"),
+        ("--threads", "100000", "a whole number from 1 to 1024"),
     ] {
         let told = refusal(ROOM.as_bytes(), &[], &[option, value]);
         assert_told(&told, &[&format!("error: {option} {value}: "), allowed]);

@@ -212,7 +212,7 @@ fn a_source_or_an_emission_that_cannot_be() {
             [
                 "room.toml:12:8: ",
                 "axis must be a direction, not zero",
-                "0 0 0",
+                "[0, 0, 0]",
             ],
         ),
         (
@@ -220,7 +220,7 @@ fn a_source_or_an_emission_that_cannot_be() {
             [
                 "room.toml:13:13: ",
                 "direction must be a direction, not zero",
-                "0 0 0",
+                "[0, 0, 0]",
             ],
         ),
         (

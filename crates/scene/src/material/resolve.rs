@@ -145,7 +145,9 @@ impl Sources<'_> {
             holder: self.holder.clone(),
             name: self.name.to_owned(),
             reason: match (self.appearance, self.library.knows(self.name)) {
-                (Some(_), _) => "its fields in the file, without a Kd, do not".into(),
+                (Some(_), _) => {
+                    "its file does not: no material library of it defines that name, or it has no Kd there".into()
+                }
                 (None, true) => "the scene file defines it without rho".into(),
                 (None, false) => "it is defined nowhere".into(),
             },
@@ -261,7 +263,13 @@ impl Sources<'_> {
 }
 
 fn shown(key: &'static str, (number, origin): &Found<f64>) -> Value {
-    value(key, number.to_string(), origin)
+    // Fifteen digits: what was written, without the noise of a product.
+    value(key, format!("{}", rounded(*number)), origin)
+}
+
+/// The nearest number of fifteen decimal digits.
+fn rounded(number: f64) -> f64 {
+    format!("{number:.14e}").parse().unwrap_or(number)
 }
 
 fn value(key: &'static str, value: String, origin: &Origin) -> Value {
