@@ -294,7 +294,7 @@ fn a_lamp_flush_in_a_ceiling_hides_it_and_the_pair_is_named() {
     let scene = Room::new(&format!("{CUBE}{lamp}{FLOOR}")).load();
     assert!(
         has(
-            &scene.warnings,
+            &scene.coincidences,
             "\"shape.1\" (lamp) hides 1.000000 m² of \"shape.0\" (plaster)"
         ),
         "{:?}",
@@ -388,11 +388,31 @@ fn a_representation_that_leaves_something_out_is_warned_of() {
 #[test]
 fn a_metal_needs_all_components_and_an_ideal_mirror_does_not() {
     let room = Room::new(&format!("{CUBE}{LAMP}{FLOOR}"));
-    let glossy = ("material.plaster.a", "1");
+    // Not all of it mirror: a closed room without loss is refused.
+    let glossy = ("material.plaster.a", "0.9");
     let need = |n: &str, k: &str| {
         let values = [glossy, ("material.plaster.n", n), ("material.plaster.k", k)];
         room.with(&values).unwrap().need.representation
     };
     assert_eq!(need("2.76", "3.79"), Representation::Full);
     assert_eq!(need("inf", "0"), Representation::Linear);
+}
+
+#[test]
+fn a_closed_room_that_loses_nothing_is_refused_and_an_open_one_is_not() {
+    let room = Room::new(&format!("{CUBE}{LAMP}{FLOOR}"));
+    let white = ("material.plaster.rho", "1");
+    let error = room.with(&[white]).err().unwrap();
+    assert!(
+        error.contains("nothing absorbs light") && error.contains("plaster"),
+        "{error}"
+    );
+    assert!(
+        room.with(&[
+            white,
+            ("shape.0.inward", "false"),
+            ("sensor.0.normal", "[0, 0, -1]")
+        ])
+        .is_ok()
+    );
 }

@@ -145,7 +145,12 @@ fn a_grid_needs_an_area_and_two_counts() {
         ("[2, 3]", "[2]", "2 whole numbers"),
         ("[2, 3]", "[2, 0]", "from 1 to 10000"),
         ("[2, 3]", "[10000, 10000]", "ten million"),
-        ("counts", "count", "lacks the key \"counts\""),
+        (
+            "counts",
+            "count",
+            "has no key \"count\"; the nearest is \"counts\"",
+        ),
+        ("counts", "cells", "lacks the key \"counts\""),
     ] {
         let error = described(&GRID.replace(from, to)).unwrap_err();
         assert!(error.contains(expected), "{to}: {error}");
