@@ -17,7 +17,7 @@ pub fn print() {
     println!("|---|---|---|---|---|---|");
     for a in ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"] {
         let file = format!("scenes/figure-3/a-{a}.toml");
-        for (i, reading) in readings(&file, &[("run.samples", "4194304")])
+        for (i, reading) in readings(&file, &[("run.samples", "1048576")])
             .iter()
             .take(5)
             .enumerate()
