@@ -6,6 +6,7 @@
     reason = "a document that cannot be made is to panic"
 )]
 
+mod closed;
 mod figure;
 mod fresnel;
 mod rooms;
@@ -73,6 +74,11 @@ fn main() {
         "Rooms",
         "Illuminance by Monte Carlo.\nFor the paper's room at a = 0 the reference itself is known to 4e-5, at a = 1 to half of its last digit; both are in the error.",
         &rooms::rows(),
+    );
+    table(
+        "Furnaces and CIE 171",
+        "Closed rooms whose walls emit, and cases in the spirit of CIE 171:2006.",
+        &closed::rows(),
     );
     figure::print();
 }

@@ -51,7 +51,7 @@ pub(crate) fn by_edge(uses: &[Use]) -> impl Iterator<Item = &[Use]> {
 /// Splits edges of a single triangle where other such edges end on them, within `tolerance` (in m).
 ///
 /// So one long edge along several short ones (a floor along a wall cut into columns) is not taken for a gap.
-pub(crate) fn split_at_junctions(mesh: &Mesh, uses: Vec<Use>, tolerance: f64) -> Vec<Use> {
+pub(crate) fn split_at_junctions(mesh: &Mesh, mut uses: Vec<Use>, tolerance: f64) -> Vec<Use> {
     let place = |vertex: u32| mesh.positions[vertex as usize];
     let single: Vec<Use> = by_edge(&uses)
         .filter(|edge| edge.len() == 1)
@@ -80,43 +80,46 @@ pub(crate) fn split_at_junctions(mesh: &Mesh, uses: Vec<Use>, tolerance: f64) ->
         let fewer = if x.len() <= y.len() { x } else { y };
         if fewer.len() <= z.len() { fewer } else { z }
     };
-    let mut result = Vec::with_capacity(uses.len());
-    for edge in by_edge(&uses) {
-        let (first, [from, to]) = (edge[0], edge[0].ends.map(place));
+    // Few edges are split, so the list is changed in place: it is the largest thing in memory.
+    let (mut split, mut pieces) = (Vec::new(), Vec::new());
+    for whole in single {
+        let [from, to] = whole.ends.map(place);
         let length = from.distance(to);
         let direction = (to - from) / length;
-        let mut stops: Vec<(f64, u32)> = Vec::new();
-        if edge.len() == 1 {
-            stops = beside(from, to)
-                .iter()
-                .filter_map(|&(_, vertex)| {
-                    let seen = place(vertex) - from;
-                    let along = seen.dot(direction);
-                    let on = along > tolerance
-                        && along < length - tolerance
-                        && (seen - along * direction).length() <= tolerance;
-                    on.then_some((along, vertex))
-                })
-                .collect();
-            stops.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
-        }
+        let mut stops: Vec<(f64, u32)> = beside(from, to)
+            .iter()
+            .filter_map(|&(_, vertex)| {
+                let seen = place(vertex) - from;
+                let along = seen.dot(direction);
+                let on = along > tolerance
+                    && along < length - tolerance
+                    && (seen - along * direction).length() <= tolerance;
+                on.then_some((along, vertex))
+            })
+            .collect();
         if stops.is_empty() {
-            result.extend_from_slice(edge);
             continue;
         }
+        stops.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
         let inner = stops.iter().map(|stop| stop.1);
-        let chain: Vec<u32> = std::iter::once(first.ends[0])
+        let chain: Vec<u32> = std::iter::once(whole.ends[0])
             .chain(inner)
-            .chain([first.ends[1]])
+            .chain([whole.ends[1]])
             .collect();
-        result.extend(chain.windows(2).map(|pair| Use {
+        pieces.extend(chain.windows(2).map(|pair| Use {
             ends: [pair[0].min(pair[1]), pair[0].max(pair[1])],
-            forward: (pair[0] < pair[1]) == first.forward,
-            ..first
+            forward: (pair[0] < pair[1]) == whole.forward,
+            ..whole
         }));
+        split.push(whole);
     }
-    result.sort_unstable();
-    result
+    if !split.is_empty() {
+        // In the order of the list they come from, so they can be searched.
+        uses.retain(|entry| split.binary_search(entry).is_err());
+        uses.append(&mut pieces);
+        uses.sort_unstable();
+    }
+    uses
 }
 
 /// Triangles joined across edges, each with whether it is wound like the first of its patch: a union-find with parity.

@@ -3,34 +3,35 @@
 use crate::edges::{self, Patches};
 use crate::surfaces::tolerance;
 use crate::weld::weld;
-use crate::{Mesh, Triangle, clean};
+use crate::{Mesh, clean};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// All closed solids of a mesh.
 #[derive(Debug, Clone, Default)]
-pub struct Solids(Vec<Solid>);
+pub struct Solids<'a>(Vec<Solid<'a>>);
 
 /// A part of an object without gaps: every edge joins an even number of triangles.
 ///
 /// A room seen from inside is one too, if it is a single object.
 #[derive(Debug, Clone)]
-pub struct Solid {
+pub struct Solid<'a> {
+    mesh: &'a Mesh,
     object: u32,
     indices: Vec<u32>,
-    /// All wound alike, as the greater part of the area is in the mesh.
-    triangles: Vec<Triangle>,
+    /// Which triangles are wound against the greater part of the area.
+    turned: Vec<bool>,
     min: DVec3,
     max: DVec3,
 }
 
-impl Solids {
+impl<'a> Solids<'a> {
     /// Finds the solids of a mesh: within each object the parts that hang together by edges, vertices within the
     /// [tolerance](crate::Surfaces::tolerance) taken as one. A mesh that [`Surfaces::new`](crate::Surfaces::new)
     /// refuses has none.
     #[must_use]
-    pub fn of(mesh: &Mesh) -> Self {
+    pub fn of(mesh: &'a Mesh) -> Self {
         if clean::check(mesh).is_err() {
             return Self::default();
         }
@@ -47,7 +48,7 @@ impl Solids {
 
     /// The same among some of the triangles, with vertices welded already.
     pub(crate) fn among(
-        mesh: &Mesh,
+        mesh: &'a Mesh,
         welded: &[u32],
         tolerance: f64,
         wanted: impl Fn(u32) -> bool,
@@ -87,7 +88,7 @@ impl Solids {
     }
 
     /// The solids in the order of their first triangles.
-    pub fn iter(&self) -> std::slice::Iter<'_, Solid> {
+    pub fn iter(&self) -> std::slice::Iter<'_, Solid<'a>> {
         self.0.iter()
     }
 
@@ -110,17 +111,17 @@ impl Solids {
     }
 }
 
-impl<'a> IntoIterator for &'a Solids {
-    type Item = &'a Solid;
-    type IntoIter = std::slice::Iter<'a, Solid>;
+impl<'s, 'a> IntoIterator for &'s Solids<'a> {
+    type Item = &'s Solid<'a>;
+    type IntoIter = std::slice::Iter<'s, Solid<'a>>;
 
     fn into_iter(self) -> Self::IntoIter {
         self.iter()
     }
 }
 
-impl Solid {
-    fn new(mesh: &Mesh, part: &[(u32, bool)]) -> Self {
+impl<'a> Solid<'a> {
+    fn new(mesh: &'a Mesh, part: &[(u32, bool)]) -> Self {
         let area_of = |sense: bool| -> f64 {
             part.iter()
                 .filter(|&&(_, turned)| turned == sense)
@@ -128,24 +129,29 @@ impl Solid {
                 .sum()
         };
         let sense = area_of(true) > area_of(false);
-        let triangles: Vec<Triangle> = part
-            .iter()
-            .map(|&(triangle, turned)| {
-                let mut triangle = mesh.triangle(triangle as usize);
-                if turned != sense {
-                    triangle.vertices.swap(1, 2);
-                }
-                triangle
-            })
-            .collect();
-        let corners = || triangles.iter().flat_map(|triangle| triangle.vertices);
+        let corners = || {
+            part.iter()
+                .flat_map(|&(triangle, _)| mesh.triangle(triangle as usize).vertices)
+        };
         Self {
+            mesh,
             object: mesh.objects[part[0].0 as usize],
             indices: part.iter().map(|&(triangle, _)| triangle).collect(),
+            turned: part.iter().map(|&(_, turned)| turned != sense).collect(),
             min: corners().fold(DVec3::INFINITY, DVec3::min),
             max: corners().fold(DVec3::NEG_INFINITY, DVec3::max),
-            triangles,
         }
+    }
+
+    /// Corners of its triangles, all wound alike.
+    fn corners(&self) -> impl Iterator<Item = [DVec3; 3]> {
+        self.indices
+            .iter()
+            .zip(&self.turned)
+            .map(|(&index, &turned)| {
+                let [a, b, c] = self.mesh.triangle(index as usize).vertices;
+                if turned { [a, c, b] } else { [a, b, c] }
+            })
     }
 
     /// Index of the object it belongs to.
@@ -172,8 +178,8 @@ impl Solid {
     #[must_use]
     pub fn volume(&self) -> f64 {
         let centre = 0.5 * (self.min + self.max);
-        let cones = self.triangles.iter().map(|triangle| {
-            let [a, b, c] = triangle.vertices.map(|vertex| vertex - centre);
+        let cones = self.corners().map(|corners| {
+            let [a, b, c] = corners.map(|vertex| vertex - centre);
             a.dot(b.cross(c)) / 6.0
         });
         cones.sum()
@@ -189,10 +195,9 @@ impl Solid {
             return false;
         }
         let half_angles: f64 = self
-            .triangles
-            .iter()
-            .map(|triangle| {
-                let [a, b, c] = triangle.vertices.map(|vertex| vertex - point);
+            .corners()
+            .map(|corners| {
+                let [a, b, c] = corners.map(|vertex| vertex - point);
                 let [la, lb, lc] = [a.length(), b.length(), c.length()];
                 let above = a.dot(b.cross(c));
                 let below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
@@ -258,14 +263,16 @@ mod tests {
     fn a_box_with_a_face_missing_is_no_solid() {
         let (positions, mut triangles) = shape::cuboid(DVec3::ZERO, DVec3::ONE, false);
         triangles.pop();
-        assert!(Solids::of(&mesh(&[(positions, triangles)])).is_empty());
+        let mesh = mesh(&[(positions, triangles)]);
+        assert!(Solids::of(&mesh).is_empty());
     }
 
     #[test]
     fn a_face_wound_the_wrong_way_does_not_open_a_solid() {
         let (positions, mut triangles) = shape::cuboid(DVec3::ZERO, DVec3::ONE, false);
         triangles[5].swap(0, 1);
-        let solids = Solids::of(&mesh(&[(positions, triangles)]));
+        let mesh = mesh(&[(positions, triangles)]);
+        let solids = Solids::of(&mesh);
         assert!(solids.contains(DVec3::splat(0.5)));
         assert!((solids.0[0].volume() - 1.0).abs() < 1e-14);
     }

@@ -3,7 +3,7 @@
 use crate::{Material, Sensor, Source, SourceKind};
 use glam::DVec3;
 use malus_geometry::Surfaces;
-use malus_geometry::solid::{Solid, Solids};
+use malus_geometry::solid::Solids;
 
 /// Marks the points strictly inside a closed solid that has no emitter inside and does not hold all points.
 ///
@@ -15,33 +15,43 @@ pub(crate) fn mark(
     sources: &[Source],
 ) {
     let offset = surfaces.offset();
+    let emitters = emitters(surfaces, materials, sources);
     for solid in &Solids::of(surfaces.mesh()) {
+        let (least, most) = solid.bounds();
+        let within = |point: DVec3| point.cmpge(least).all() && point.cmple(most).all();
         let mut points: Vec<_> = sensors
             .iter_mut()
             .flat_map(|sensor| &mut sensor.points)
             .collect();
         let count = points.len();
+        points.retain(|point| within(point.position));
+        // Whether an emitter is inside is asked first: a room of a million triangles is then asked once, not for each
+        // point.
+        if points.is_empty() || emitters.iter().any(|&point| solid.contains(point)) {
+            continue;
+        }
         points.retain(|point| solid.contains(point.position + offset * point.normal));
-        let some = !points.is_empty() && points.len() < count;
-        if some && !lit(solid, surfaces, materials, sources) {
+        if points.len() < count {
             points.iter_mut().for_each(|point| point.enclosed = true);
         }
     }
 }
 
-/// Whether anything emits inside a solid: a point source in it, or a surface whose front lies in it.
-fn lit(solid: &Solid, surfaces: &Surfaces, materials: &[Material], sources: &[Source]) -> bool {
+/// A point of each emitter: point sources, and emitting triangles a little to the front.
+fn emitters(surfaces: &Surfaces, materials: &[Material], sources: &[Source]) -> Vec<DVec3> {
     let points = sources.iter().filter_map(|source| match source.kind {
         SourceKind::Point { position, .. } => Some(position),
         SourceKind::Distant { .. } => None,
     });
     let mesh = surfaces.mesh();
-    let emits = |surface: u32| materials[surface as usize].emission.is_some();
-    let emitting = (0..mesh.len()).filter(|triangle| emits(mesh.surfaces[*triangle]));
-    let fronts = emitting.map(|triangle| {
+    let emits = |triangle: &usize| {
+        materials[mesh.surfaces[*triangle] as usize]
+            .emission
+            .is_some()
+    };
+    let fronts = (0..mesh.len()).filter(emits).map(|triangle| {
         let triangle = mesh.triangle(triangle);
         triangle.centroid() + surfaces.offset() * triangle.normal()
     });
-    let inside = |point: DVec3| solid.contains(point);
-    points.into_iter().any(inside) || fronts.into_iter().any(inside)
+    points.chain(fronts).collect()
 }

@@ -119,6 +119,19 @@ impl Import {
         }
     }
 
+    /// Forgets the faces of those objects that are geometry and `done` with: a large mesh would stand in memory twice.
+    pub(crate) fn let_go(&mut self, done: impl Fn(usize) -> bool) {
+        for index in 0..self.model.objects.len() {
+            if self.role(index) == Role::Geometry && done(index) {
+                for part in &mut self.model.objects[index].parts {
+                    part.positions = Vec::new();
+                    part.triangles = Vec::new();
+                    part.faces = Vec::new();
+                }
+            }
+        }
+    }
+
     /// Name of an object for messages.
     pub(crate) fn label(&self, object: &Object) -> String {
         format!("object {:?} ({})", object.name, self.file)

@@ -48,24 +48,28 @@ impl Scene {
     pub fn load(path: &Path, overrides: &[Override]) -> Result<Self, Error> {
         let file = SceneFile::read(path, overrides)?;
         let mut warnings = Vec::new();
-        let imports = each(&file.meshes, Import::load)?;
+        let mut imports = each(&file.meshes, Import::load)?;
         for import in &imports {
             warnings.extend(import.warnings());
         }
 
         let measured = measured(&file.sensors, &imports)?;
-        let mut assembly = Assembly::new(&imports, &file, &measured.objects())?;
+        let sensed = measured.objects();
+        let mut assembly = Assembly::new(&imports, &file, &sensed)?;
+        for (index, import) in imports.iter_mut().enumerate() {
+            import.let_go(|object| !sensed.contains(&(index, object)));
+        }
         let names = assembly.material_names(&imports);
         let meshes = !imports.is_empty();
         file.library.check_used(&names, meshes, &mut warnings)?;
 
         let mesh = std::mem::take(&mut assembly.mesh);
-        let surfaces = Surfaces::new(mesh.clone()).map_err(|error| Error::Geometry {
+        // Of the mesh as given: what Surfaces leaves out is a defect too.
+        let flaws = malus_geometry::defects::of(&mesh);
+        let surfaces = Surfaces::new(mesh).map_err(|error| Error::Geometry {
             path: path.display().to_string(),
             reason: Box::new(error),
         })?;
-        // Of the mesh as given: what Surfaces leaves out is a defect too.
-        let flaws = malus_geometry::defects::of(&mesh);
         let (materials, doubts) = assembly.materials(&imports, &file.library, &surfaces)?;
         warnings.extend(doubts);
         warnings.extend(no_mirrors(&materials));
