@@ -113,19 +113,24 @@ fn automatic<const N: usize>(engine: &Engine<N>) -> Chosen {
     };
     let (local, gather) = (cost(Estimator::Local), cost(Estimator::Gather));
     let walks = PILOT * u64::from(REPLICAS);
-    if local < gather {
+    let cheaper = |one: f64, other: f64, name: &str| {
+        format!(
+            "nothing mirror-like, and a pilot of {walks} walks found it {:.1} times cheaper than {name}",
+            other / one
+        )
+    };
+    // An estimator whose pilot saw nothing vary has proved nothing.
+    if local <= 0.0 || gather <= 0.0 {
+        Chosen::gather(format!(
+            "nothing mirror-like, and a pilot of {walks} walks saw no light to compare the estimators by"
+        ))
+    } else if local < gather {
         Chosen {
             estimator: Estimator::Local,
-            reason: format!(
-                "nothing mirror-like, and a pilot of {walks} walks found it {:.1} times cheaper than gather",
-                gather / local
-            ),
+            reason: cheaper(local, gather, "gather"),
         }
     } else {
-        Chosen::gather(format!(
-            "nothing mirror-like, and a pilot of {walks} walks found it {:.1} times cheaper than local",
-            local / gather
-        ))
+        Chosen::gather(cheaper(gather, local, "local"))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::direction::{cosine_weighted, in_cone, on_disc};
 use crate::random::{Purpose, Uniforms};
+use crate::reading::Unmet;
 use glam::DVec3;
 use malus_geometry::Surfaces;
 use malus_scene::{Distribution, Material, Scene, Source, SourceKind};
@@ -108,6 +109,20 @@ impl<'a> Emitters<'a> {
             Choice::All => self.cumulated.len(),
         };
         entries.checked_sub(1).map_or(0.0, |i| self.cumulated[i])
+    }
+
+    /// What a walk may bring that meets emitting surfaces by chance.
+    #[must_use]
+    pub(crate) fn unmet(&self) -> Unmet {
+        let exitances = self
+            .triangles
+            .iter()
+            .map(|&triangle| self.emission(triangle).0);
+        let radius = 0.5 * self.surfaces.radius();
+        Unmet {
+            one: exitances.fold(0.0, f64::max),
+            most: self.flux(Choice::Areas) / (PI * radius * radius),
+        }
     }
 
     /// Share of the flux that sources without geometry emit, 0 … 1.

@@ -121,6 +121,13 @@ impl<'a> Passes<'a> {
     }
 }
 
+impl<'a> Passes<'a> {
+    /// What the walks of each kind move through.
+    pub(crate) fn media(&self) -> impl Iterator<Item = &Medium<'a>> {
+        std::iter::once(&self.main).chain(&self.apart)
+    }
+}
+
 /// What walks have cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Effort {

@@ -13,6 +13,28 @@ pub(crate) struct Readings<'a> {
     receivers: &'a [Receiver],
     /// What is known without chance, one Stokes vector a sensor; S0 is the same in every model.
     exact: Vec<[f64; 4]>,
+    unmet: Unmet,
+}
+
+/// Light that a walk from a sensor meets by chance alone, off a mirror, and may not have met yet.
+///
+/// The spread between replicas tells nothing of what none of them has met. So every standard error counts one more
+/// walk than there were: one that met the brightest emitter in a mirror, which adds its exitance/n in squares, or the
+/// whole of what the emitters could send from half a scene's radius away where that is less.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Unmet {
+    /// Irradiance that one walk brings that meets the brightest emitter, in unit/m².
+    pub one: f64,
+    /// Most that there can be of it, in unit/m².
+    pub most: f64,
+}
+
+impl Unmet {
+    /// The error with that of `walks` walks that have not met what they might.
+    fn widened(self, standard_error: f64, walks: f64) -> f64 {
+        let unmet = (self.one / walks).min(self.most);
+        (standard_error * standard_error + unmet * unmet).sqrt()
+    }
 }
 
 impl<'a> Readings<'a> {
@@ -23,6 +45,7 @@ impl<'a> Readings<'a> {
         channels: Channels,
         receivers: &'a [Receiver],
         exact: &[[f64; N]],
+        unmet: Unmet,
     ) -> Self {
         let padded = |stokes: &[f64; N]| {
             std::array::from_fn(|component| stokes.get(component).copied().unwrap_or(0.0))
@@ -32,6 +55,7 @@ impl<'a> Readings<'a> {
             channels,
             receivers,
             exact: exact.iter().map(padded).collect(),
+            unmet,
         }
     }
 
@@ -39,6 +63,7 @@ impl<'a> Readings<'a> {
         let index = sensor * self.channels.count;
         let mut estimate = tally.estimate(|means| means.at(index));
         estimate.mean += self.exact[sensor][0];
+        estimate.standard_error = self.unmet.widened(estimate.standard_error, walks(tally));
         estimate
     }
 
@@ -83,11 +108,13 @@ impl<'a> Readings<'a> {
         };
         let exact = free.iter().map(|&s| self.exact[s][0]).sum::<f64>() / count;
         let main = tally.estimate(|means| mean(means, 0));
-        let paired = |channel| Paired::new(tally, exact, channel, mean);
+        // Points are walked from independently, so a mean over them has as many times the walks.
+        let widened = |error| self.unmet.widened(error, count * walks(tally));
+        let paired = |channel| Paired::new(tally, exact, channel, mean, widened);
         Group {
             readings: range.map(|sensor| self.reading(tally, sensor)).collect(),
             mean: main.mean + exact,
-            mean_standard_error: main.standard_error,
+            mean_standard_error: widened(main.standard_error),
             scalar: self.channels.scalar.map(paired),
             diffuse: self.channels.diffuse.map(paired),
         }
@@ -95,12 +122,17 @@ impl<'a> Readings<'a> {
 
     fn reading(&self, tally: &Tally, sensor: usize) -> Reading {
         let first = sensor * self.channels.count;
+        let enclosed = self.receivers[sensor].enclosed;
+        let widened = |error| match enclosed {
+            true => error,
+            false => self.unmet.widened(error, walks(tally)),
+        };
         let mut stokes = self.exact[sensor];
         let mut standard_error = [0.0; 4];
         for component in 0..self.channels.components {
             let estimate = tally.estimate(|means| means.at(first + component));
             stokes[component] += estimate.mean;
-            standard_error[component] = estimate.standard_error;
+            standard_error[component] = widened(estimate.standard_error);
         }
         let dolp = if self.channels.components > 1 {
             degree_of_linear_polarisation(stokes, |[c0, c1, c2]| {
@@ -113,13 +145,18 @@ impl<'a> Readings<'a> {
             }
         };
         let at = |means: &Means, channel: usize| means.at(first + channel);
-        let paired = |channel| Paired::new(tally, self.exact[sensor][0], channel, at);
+        let exact = self.exact[sensor][0];
+        let paired = |channel| Paired::new(tally, exact, channel, at, widened);
         Reading {
-            enclosed: self.receivers[sensor].enclosed,
+            enclosed,
             stokes,
             standard_error,
             dolp: dolp.mean,
-            dolp_standard_error: dolp.standard_error,
+            dolp_standard_error: if stokes[0] > 0.0 && self.channels.components > 1 {
+                widened(dolp.standard_error * stokes[0]) / stokes[0]
+            } else {
+                0.0
+            },
             scalar: self.channels.scalar.map(paired),
             diffuse: self.channels.diffuse.map(paired),
         }
@@ -128,14 +165,30 @@ impl<'a> Readings<'a> {
 
 impl Paired {
     /// A channel beside the main model's S0, both read by `at`; the `exact` part is the same in both.
-    fn new(tally: &Tally, exact: f64, channel: usize, at: impl Fn(&Means, usize) -> f64) -> Self {
+    /// Errors are `widened` by what may not have been met, but where the two models are one and the same.
+    fn new(
+        tally: &Tally,
+        exact: f64,
+        channel: usize,
+        at: impl Fn(&Means, usize) -> f64,
+        widened: impl Fn(f64) -> f64,
+    ) -> Self {
         let other = tally.estimate(|means| at(means, channel));
         let difference = tally.estimate(|means| at(means, 0) - at(means, channel));
         Self {
             value: other.mean + exact,
-            standard_error: other.standard_error,
+            standard_error: widened(other.standard_error),
             difference: difference.mean,
-            difference_standard_error: difference.standard_error,
+            difference_standard_error: if channel == 0 {
+                0.0
+            } else {
+                widened(difference.standard_error)
+            },
         }
     }
+}
+
+/// Walks taken at each sensor by all replicas together.
+fn walks(tally: &Tally) -> f64 {
+    tally.replicas().map(|replica| replica.points).sum::<u64>() as f64
 }

@@ -4,14 +4,14 @@ use crate::choose::{blind_spots, choose, erratic};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::exact;
-use crate::pass::{Channels, Passes, materials_of};
-use crate::reading::Readings;
+use crate::pass::{Channels, Passes, has_mirrors, materials_of};
+use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
 use crate::results::{Answer, Progress, Results, Stop};
 use crate::statistics::REPLICAS;
 use crate::trace::LONGEST;
 use malus_optics::Representation;
-use malus_scene::{Model, Scene, Settings};
+use malus_scene::{Estimator, Model, Scene, Settings};
 
 /// Walks a replica before the first checkpoint: fewer would not tell an error from luck.
 const FIRST_CHECKPOINT: u64 = 16;
@@ -68,7 +68,16 @@ fn run_with<const N: usize>(
     };
     let chosen = choose(&engine, settings.estimator);
     let exact = exact::from_sources::<N>(&engine.passes.main, &receivers);
-    let readings = Readings::new(scene, channels, &receivers, &exact);
+    let mirrors = engine
+        .passes
+        .media()
+        .any(|medium| has_mirrors(medium.materials));
+    let unmet = if mirrors && chosen.estimator == Estimator::Gather {
+        emitters.unmet()
+    } else {
+        Unmet::default()
+    };
+    let readings = Readings::new(scene, channels, &receivers, &exact, unmet);
 
     let mut tally = engine.tally();
     let mut taken = 0;
@@ -116,7 +125,12 @@ fn run_with<const N: usize>(
     };
 
     let relative_error_max = readings.relative_error(&tally);
-    let mut warnings = blind_spots(&engine.passes.main, chosen.estimator);
+    // The scalar model beside the diffuse one has mirrors of its own.
+    let mut warnings: Vec<String> = engine
+        .passes
+        .media()
+        .flat_map(|medium| blind_spots(medium, chosen.estimator))
+        .collect();
     warnings.extend(erratic(&engine, chosen.estimator));
     warnings.extend(exact::singular(&engine.passes.main, &receivers));
     if truncated > 0 {

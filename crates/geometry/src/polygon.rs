@@ -83,7 +83,13 @@ impl Polygon {
 
     /// Whether some side of this polygon has all of the other beyond it, or no further inside than `margin` (in m).
     pub fn separates(&self, other: &Self, margin: f64) -> bool {
-        self.sides().any(|(from, to)| {
+        // The direction of a side that is next to nothing is noise, and such a side would separate everything.
+        let longest = self
+            .sides()
+            .map(|(from, to)| from.distance(to))
+            .fold(0.0, f64::max);
+        let long = move |side: &(DVec2, DVec2)| side.0.distance(side.1) > 1e-6 * longest;
+        self.sides().filter(long).any(|(from, to)| {
             let along = to - from;
             let limit = margin * along.length();
             other
