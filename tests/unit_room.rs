@@ -111,3 +111,22 @@ fn mirrored_room_agrees_with_its_images() {
         assert_estimate("difference", relative, difference, 0.1);
     }
 }
+
+/// The lamp's images in the glossy walls are met by one walk in thousands. A run that stops by its error must not stop
+/// before it has met them: in ten seeds its values agree with a long run of another seed.
+#[test]
+fn a_run_that_stops_by_its_error_has_not_overlooked_the_lamp_in_the_mirrors() {
+    let points = "points = [[0.4, 0.5, 0], [0.6, 0.5, 0]]";
+    let long = "estimator = 'gather'\nsamples = 4194304\nseed = 100";
+    // The two points mirror each other.
+    let reference: Vec<(f64, f64)> = measured(&room(0.6, points, long)).iter().map(s0).collect();
+    let exact = (reference[0].0 + reference[1].0) / 2.0;
+    let uncertainty = reference[0].1.hypot(reference[1].1) / 2.0;
+    for seed in 1..=10 {
+        let run = format!("estimator = 'gather'\nrelative_error = 0.01\nseed = {seed}");
+        for reading in measured(&room(0.6, points, &run)) {
+            let (value, error) = s0(&reading);
+            assert_estimate("stopped", (value, error.hypot(uncertainty)), exact, 0.0105);
+        }
+    }
+}

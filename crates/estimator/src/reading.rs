@@ -192,3 +192,20 @@ impl Paired {
 fn walks(tally: &Tally) -> f64 {
     tally.replicas().map(|replica| replica.points).sum::<u64>() as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_one_walk_might_have_met_widens_an_error_until_it_is_all_there_is() {
+        let unmet = Unmet {
+            one: 30.0,
+            most: 0.5,
+        };
+        // √(0.4² + (30/100)²) = 0.5; at ten walks 30/10 is more than there can be: √(1.2² + 0.5²) = 1.3.
+        assert!((unmet.widened(0.4, 100.0) - 0.5).abs() < 1e-15);
+        assert!((unmet.widened(1.2, 10.0) - 1.3).abs() < 1e-15);
+        assert!((Unmet::default().widened(0.4, 1.0) - 0.4).abs() < 1e-15);
+    }
+}
