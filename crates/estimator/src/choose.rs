@@ -50,21 +50,11 @@ pub(crate) fn choose<const N: usize>(engine: &Engine<N>, asked: Estimator) -> Ch
 }
 
 fn automatic<const N: usize>(engine: &Engine<N>) -> Chosen {
-    let Medium {
-        surfaces,
-        materials,
-        ..
-    } = engine.passes.main;
-    let mirrors = mirrorlike_names(materials);
-    let mirrors = if mirrors.is_empty() {
-        engine
-            .passes
-            .apart
-            .map(|medium| mirrorlike_names(medium.materials))
-            .unwrap_or_default()
-    } else {
-        mirrors
-    };
+    let surfaces = engine.passes.main.surfaces;
+    let media = engine.passes.media();
+    let mirrors: Vec<&str> = media
+        .flat_map(|medium| mirrorlike_names(medium.materials))
+        .collect();
     if !mirrors.is_empty() {
         return Chosen::gather(format!(
             "local estimates cannot see light whose last reflection is mirror-like ({})",
