@@ -1,126 +1,44 @@
 //! Which estimator a scene is given, and what each cannot see.
 
 use crate::engine::Engine;
+use crate::medium::Medium;
 use crate::pass::is_mirrorlike;
 use crate::receiver::Receiver;
-use crate::statistics::REPLICAS;
-use crate::trace::Medium;
+use crate::trace::Techniques;
 use malus_scene::{Estimator, Material};
 
-/// Walks a replica of a pilot run.
-const PILOT: u64 = 8;
-
-/// Sensors, evenly spaced over all, that a pilot looks at.
-const PILOT_SENSORS: usize = 32;
-
-/// A local estimate is trusted where no surface in front of a sensor is nearer than this share of the mean distance:
-/// its variance grows as the inverse square of the distance, faster than a short pilot can tell.
-const CLEARANCE: f64 = 0.2;
-
-/// Nearer than this, in the same measure, errors are not only large but wrong.
+/// A local estimate is not to be trusted where a surface in front of a sensor is nearer than this share of the mean
+/// distance: its variance grows as the inverse square of the distance.
 const TRUSTED: f64 = 0.02;
 
-/// An estimator with the reason for it.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Chosen {
-    /// Local or gather.
-    pub estimator: Estimator,
-    /// One sentence.
-    pub reason: String,
-}
-
-impl Chosen {
-    fn gather(reason: impl Into<String>) -> Self {
-        Self {
-            estimator: Estimator::Gather,
-            reason: reason.into(),
-        }
-    }
-}
-
-/// The estimator asked for, or for `auto` the one that misses least, and among equals the one that is cheaper.
-pub(crate) fn choose<const N: usize>(engine: &Engine<N>, asked: Estimator) -> Chosen {
+/// The techniques of an estimator, and one sentence on why it is used.
+pub(crate) fn techniques(asked: Estimator, receivers: &[Receiver]) -> (Techniques, &'static str) {
+    let joined = receivers.iter().any(Receiver::is_irradiance);
     match asked {
-        Estimator::Local | Estimator::Gather => Chosen {
-            estimator: asked,
-            reason: "asked for".into(),
-        },
-        Estimator::Auto | Estimator::Direct => automatic(engine),
-    }
-}
-
-fn automatic<const N: usize>(engine: &Engine<N>) -> Chosen {
-    let surfaces = engine.passes.main.surfaces;
-    let media = engine.passes.media();
-    let mirrors: Vec<&str> = media
-        .flat_map(|medium| mirrorlike_names(medium.materials))
-        .collect();
-    if !mirrors.is_empty() {
-        return Chosen::gather(format!(
-            "local estimates cannot see light whose last reflection is mirror-like ({})",
-            mirrors.join(", ")
-        ));
-    }
-    let pilots: Vec<Receiver> = {
-        let free: Vec<Receiver> = engine
-            .receivers
-            .iter()
-            .copied()
-            .filter(|r| !r.enclosed)
-            .collect();
-        let stride = free.len().div_ceil(PILOT_SENSORS).max(1);
-        free.into_iter().step_by(stride).collect()
-    };
-    let clearance = pilots
-        .iter()
-        .map(|receiver| clearance(surfaces, receiver))
-        .fold(f64::INFINITY, f64::min);
-    if clearance < CLEARANCE {
-        return Chosen::gather(format!(
-            "a sensor stands so near a surface ({:.2} of its mean view) that local estimates would be erratic",
-            clearance
-        ));
-    }
-    let pilot = Engine::<N> {
-        receivers: &pilots,
-        ..*engine
-    };
-    // Cost of a sample in rays times the largest relative variance of a sample: proportional to time for a given error.
-    let shares = engine.receivers.len() as f64 / pilots.len().max(1) as f64;
-    let cost = |estimator| {
-        let mut tally = pilot.tally();
-        let effort = pilot.advance(estimator, &mut tally, PILOT);
-        let variance = (0..pilots.len())
-            .map(|sensor| {
-                let index = sensor * pilot.channels.count;
-                let estimate = tally.estimate(|means| means.at(index));
-                let relative = estimate.standard_error / estimate.mean;
-                relative * relative
-            })
-            .filter(|variance| variance.is_finite())
-            .fold(0.0, f64::max);
-        variance * effort.rays as f64 * shares
-    };
-    let (local, gather) = (cost(Estimator::Local), cost(Estimator::Gather));
-    let walks = PILOT * u64::from(REPLICAS);
-    let cheaper = |one: f64, other: f64, name: &str| {
-        format!(
-            "nothing mirror-like, and a pilot of {walks} walks found it {:.1} times cheaper than {name}",
-            other / one
-        )
-    };
-    // An estimator whose pilot saw nothing vary has proved nothing.
-    if local <= 0.0 || gather <= 0.0 {
-        Chosen::gather(format!(
-            "nothing mirror-like, and a pilot of {walks} walks saw no light to compare the estimators by"
-        ))
-    } else if local < gather {
-        Chosen {
-            estimator: Estimator::Local,
-            reason: cheaper(local, gather, "gather"),
-        }
-    } else {
-        Chosen::gather(cheaper(gather, local, "local"))
+        Estimator::Local => (
+            Techniques {
+                mirrored: false,
+                local: 1.0,
+                gather: false,
+            },
+            "asked for",
+        ),
+        Estimator::Gather => (
+            Techniques {
+                mirrored: false,
+                local: 0.0,
+                gather: true,
+            },
+            "asked for",
+        ),
+        Estimator::Auto | Estimator::Direct => (
+            Techniques {
+                mirrored: true,
+                local: if joined { 1.0 } else { 0.0 },
+                gather: true,
+            },
+            "walks from both ends and images in flat mirrors, weighted against each other: nothing is lost",
+        ),
     }
 }
 
@@ -188,9 +106,14 @@ pub(crate) fn blind_spots(medium: &Medium, estimator: Estimator) -> Vec<String> 
         Estimator::Local => vec![format!(
             "local: light whose last reflection before the sensor is mirror-like is missing (off {mirrors})"
         )],
-        _ if sources > 0.0 => vec![format!(
+        Estimator::Gather if sources > 0.0 => vec![format!(
             "gather: light of point, spot and distant sources ({:.1} % of the flux) that a mirror-like reflection \
              (off {mirrors}) sends on to a sensor or to a diffuse surface is missing",
+            100.0 * sources
+        )],
+        _ if sources > 0.0 && !medium.mirrors.is_complete() => vec![format!(
+            "light of point, spot and distant sources ({:.1} % of the flux) is missing where it is mirrored by small or \
+             curved surfaces on its way and again just before a sensor (off {mirrors})",
             100.0 * sources
         )],
         _ => Vec::new(),

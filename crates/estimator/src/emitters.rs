@@ -30,19 +30,78 @@ pub(crate) enum Choice {
 /// State of emitted light: (1, q, u, v) about an axis; `None` where unpolarised.
 pub(crate) type State<'a> = Option<(&'a [f64; 4], DVec3)>;
 
-/// What an emitter sends to one point.
+/// A place of emission that a point looks at.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Incoming<'a> {
-    /// Where the light comes from; `None` from infinity.
+pub(crate) struct Site<'a> {
+    /// Where it is; `None` at infinity.
     pub from: Option<DVec3>,
-    /// Unit vector from the point towards the emitter.
-    pub toward: DVec3,
-    /// Irradiance on a surface across the beam, divided by the probability of this choice, in unit/m².
-    pub irradiance: f64,
-    /// Density of this choice per solid angle at the point; `None` where no direction sampled at random could meet it.
-    pub density: Option<f64>,
     /// State of the light.
     pub state: State<'a>,
+    /// One over the probability with which this emitter was chosen, per area where it is a surface.
+    inverse: f64,
+    shape: Shape<'a>,
+}
+
+/// How a place of emission sends light off.
+#[derive(Debug, Clone, Copy)]
+enum Shape<'a> {
+    /// Point of a surface, with its normal and the share of the table's flux per area, in 1/m².
+    Area { normal: DVec3, density: f64 },
+    /// Point source: intensity in unit/sr, by direction.
+    Point {
+        intensity: f64,
+        distribution: &'a Distribution,
+    },
+    /// Parallel light along a direction: irradiance across it, and the area that walks from it start on, in m².
+    Distant {
+        direction: DVec3,
+        irradiance: f64,
+        area: f64,
+    },
+}
+
+impl Site<'_> {
+    /// Irradiance across the beam that leaves along the unit vector `leaving`, after a way of the given square, divided
+    /// by the probability with which this site was chosen, in unit/m².
+    #[inline]
+    pub(crate) fn irradiance(&self, leaving: DVec3, square: f64) -> f64 {
+        self.inverse
+            * match self.shape {
+                // Radiance M/π; M is in the inverse, whose probability is by flux.
+                Shape::Area { normal, .. } => leaving.dot(normal).max(0.0) / (PI * square),
+                Shape::Point {
+                    intensity,
+                    distribution,
+                } => intensity * distribution.share(leaving) / square,
+                Shape::Distant { irradiance, .. } => irradiance,
+            }
+    }
+
+    /// Density per area across the beam with which a walk that starts at this site arrives there.
+    #[inline]
+    pub(crate) fn launched(&self, leaving: DVec3, square: f64) -> f64 {
+        match self.shape {
+            Shape::Area { normal, .. } => leaving.dot(normal).max(0.0) / (PI * square),
+            Shape::Point { distribution, .. } => launch_density(distribution, leaving) / square,
+            Shape::Distant { area, .. } => 1.0 / area,
+        }
+    }
+
+    /// Density per area with which the site was chosen on its surface; `None` for a source without geometry.
+    pub(crate) fn area_density(&self) -> Option<f64> {
+        match self.shape {
+            Shape::Area { density, .. } => Some(density),
+            Shape::Point { .. } | Shape::Distant { .. } => None,
+        }
+    }
+
+    /// Direction of light from infinity.
+    pub(crate) fn direction(&self) -> DVec3 {
+        match self.shape {
+            Shape::Distant { direction, .. } => direction,
+            Shape::Area { .. } | Shape::Point { .. } => DVec3::ZERO,
+        }
+    }
 }
 
 /// Where a walk from an emitter starts.
@@ -56,8 +115,8 @@ pub(crate) struct Start<'a> {
     pub flux: f64,
     /// Normal of the emitting surface; `None` for a source without geometry.
     pub normal: Option<DVec3>,
-    /// State of the light.
-    pub state: State<'a>,
+    /// The same place as one that a point looks at.
+    pub site: Site<'a>,
 }
 
 fn state_of<'a>(state: &'a [f64; 4], axis: DVec3) -> State<'a> {
@@ -148,30 +207,16 @@ impl<'a> Emitters<'a> {
         (exitance, material)
     }
 
-    /// Density per solid angle with which [`Emitters::look`] finds the point of a surface met at `distance` and
-    /// under `cos_emission`, for a surface of the given exitance.
+    /// Share of the table's flux that a surface of the given exitance emits per area, in 1/m².
     ///
-    /// A triangle is chosen by its flux and a point of it evenly, so the density per area is exitance/flux
+    /// A triangle is chosen by its flux and a point of it evenly, so this is the density per area of the choice
     /// whichever triangle it is.
-    pub(crate) fn density(
-        &self,
-        choice: Choice,
-        exitance: f64,
-        distance: f64,
-        cos_emission: f64,
-    ) -> f64 {
-        exitance / self.flux(choice) * distance * distance / cos_emission
+    pub(crate) fn density(&self, choice: Choice, exitance: f64) -> f64 {
+        exitance / self.flux(choice)
     }
 
-    /// Light that one emitter, chosen by flux, would send to `point` were nothing between them.
-    ///
-    /// `None` where the point lies behind it, outside its cone, or looks at a hidden part.
-    pub(crate) fn look(
-        &self,
-        choice: Choice,
-        point: DVec3,
-        [which, u, v, _]: [f64; 4],
-    ) -> Option<Incoming<'a>> {
+    /// One place of emission, chosen by flux; `None` where that is a hidden part of a surface.
+    pub(crate) fn look(&self, choice: Choice, [which, u, v, _]: [f64; 4]) -> Option<Site<'a>> {
         let total = self.flux(choice);
         if total <= 0.0 {
             return None;
@@ -179,59 +224,64 @@ impl<'a> Emitters<'a> {
         let entry = self.entry(choice, which);
         let Some(&triangle) = self.triangles.get(entry) else {
             let index = entry - self.triangles.len();
-            let mut incoming = self.light_of_source(index, point)?;
-            incoming.irradiance *= total / source_flux(&self.sources[index], self.surfaces);
-            return Some(incoming);
+            let flux = source_flux(&self.sources[index], self.surfaces);
+            return Some(self.site_of_source(index, total / flux));
         };
         let position = self.surfaces.triangle(triangle).point_at([u, v]);
-        let normal = self.surfaces.normal(triangle);
-        let from = position + normal * self.surfaces.offset();
-        let to_light = from - point;
-        let square = to_light.length_squared();
-        let toward = to_light / square.sqrt();
-        let cos_emission = -toward.dot(normal);
-        if cos_emission <= 0.0 || !self.surfaces.exposed(triangle, position) {
-            return None;
-        }
-        let (exitance, material) = self.emission(triangle);
-        Some(Incoming {
-            from: Some(from),
-            toward,
-            // Radiance M/π over a density per area of M/flux.
-            irradiance: total * cos_emission / (PI * square),
-            density: Some(exitance / total * square / cos_emission),
-            state: emitted_state(material),
-        })
+        self.surfaces
+            .exposed(triangle, position)
+            .then(|| self.site_on(triangle, position, total))
     }
 
-    /// Light that the source without geometry of that number sends to `point` were nothing between them.
-    pub(crate) fn light_of_source(&self, index: usize, point: DVec3) -> Option<Incoming<'a>> {
+    /// A point of an emitting triangle as a site, out of a table of the flux `total`.
+    pub(crate) fn site_on(&self, triangle: u32, position: DVec3, total: f64) -> Site<'a> {
+        let normal = self.surfaces.normal(triangle);
+        let (exitance, material) = self.emission(triangle);
+        Site {
+            from: Some(position + normal * self.surfaces.offset()),
+            state: emitted_state(material),
+            inverse: total,
+            shape: Shape::Area {
+                normal,
+                density: exitance / total,
+            },
+        }
+    }
+
+    /// The source without geometry of that number, chosen with the probability 1/`inverse`.
+    pub(crate) fn site_of_source(&self, index: usize, inverse: f64) -> Site<'a> {
         let source = &self.sources[index];
-        let (from, toward, irradiance) = match &source.kind {
+        let (from, shape) = match &source.kind {
             SourceKind::Point {
                 position,
                 intensity,
                 distribution,
-            } => {
-                let to_light = *position - point;
-                let square = to_light.length_squared();
-                let toward = to_light / square.sqrt();
-                let share = distribution.share(-toward);
-                (Some(*position), toward, intensity * share / square)
-            }
+            } => (
+                Some(*position),
+                Shape::Point {
+                    intensity: *intensity,
+                    distribution,
+                },
+            ),
             SourceKind::Distant {
                 direction,
                 irradiance,
-            } => (None, -*direction, *irradiance),
+            } => {
+                let radius = self.surfaces.radius();
+                let shape = Shape::Distant {
+                    direction: *direction,
+                    irradiance: *irradiance,
+                    area: PI * radius * radius,
+                };
+                (None, shape)
+            }
         };
-        // A point at the source itself has no direction to it.
-        (irradiance > 0.0 && irradiance.is_finite()).then_some(Incoming {
+        Site {
             from,
-            toward,
-            irradiance,
-            density: None,
             state: state_of(&source.state, source.axis),
-        })
+            inverse,
+            shape,
+        }
     }
 
     /// Number of sources without geometry.
@@ -258,12 +308,13 @@ impl<'a> Emitters<'a> {
         let Some(&triangle) = self.triangles.get(entry) else {
             let source = &self.sources[entry - self.triangles.len()];
             let (origin, direction, share) = self.launch(&source.kind, [u, v], [s, t]);
+            let inverse = flux / source_flux(source, self.surfaces);
             return Some(Start {
                 origin,
                 direction,
                 flux: flux * share,
                 normal: None,
-                state: state_of(&source.state, source.axis),
+                site: self.site_of_source(entry - self.triangles.len(), inverse),
             });
         };
         let position = self.surfaces.triangle(triangle).point_at([u, v]);
@@ -273,7 +324,7 @@ impl<'a> Emitters<'a> {
             direction: cosine_weighted(normal, [s, t]),
             flux,
             normal: Some(normal),
-            state: emitted_state(self.emission(triangle).1),
+            site: self.site_on(triangle, position, flux),
         })
     }
 
@@ -306,6 +357,20 @@ impl<'a> Emitters<'a> {
                 (on_disc(entry, *direction, radius, across), *direction, 1.0)
             }
         }
+    }
+}
+
+/// Density per solid angle with which a walk leaves a point source along a direction (see [`Emitters::start`]).
+fn launch_density(distribution: &Distribution, leaving: DVec3) -> f64 {
+    match *distribution {
+        Distribution::Isotropic => 0.25 / PI,
+        Distribution::Cosine { direction } => direction.dot(leaving).max(0.0) / PI,
+        Distribution::Spot {
+            direction,
+            cos_outer,
+            ..
+        } if direction.dot(leaving) > cos_outer => 0.5 / (PI * (1.0 - cos_outer)),
+        Distribution::Spot { .. } => 0.0,
     }
 }
 

@@ -6,7 +6,6 @@ use crate::pass::{Channels, Effort, Passes};
 use crate::random::Stream;
 use crate::receiver::Receiver;
 use crate::statistics::{REPLICAS, Replica, Tally};
-use malus_scene::Estimator;
 use rayon::prelude::*;
 
 /// Walks that a step takes in all, so that a watcher is asked several times a second.
@@ -31,7 +30,14 @@ impl<const N: usize> Engine<'_, N> {
     /// All replicas of a run, empty.
     #[must_use]
     pub(crate) fn tally(&self) -> Tally {
-        Tally::new(0..REPLICAS, self.receivers.len() * self.channels.count)
+        // Walks from sensors first, walks from emitters after them: each sum belongs to one kind of walk.
+        Tally::new(0..REPLICAS, 2 * self.length())
+    }
+
+    /// Sums of one kind of walk.
+    #[must_use]
+    pub(crate) fn length(&self) -> usize {
+        self.receivers.len() * self.channels.count
     }
 
     /// Walks a replica that make up one step.
@@ -41,19 +47,23 @@ impl<const N: usize> Engine<'_, N> {
     }
 
     /// Takes every replica to `until` walks. Each sum is added to by one task, in the order of the walks.
-    pub(crate) fn advance(&self, estimator: Estimator, tally: &mut Tally, until: u64) -> Effort {
+    pub(crate) fn advance(&self, tally: &mut Tally, until: u64) -> Effort {
         let replicas: Vec<&mut Replica> = tally.replicas_mut().collect();
-        let efforts: Vec<Effort> = if estimator == Estimator::Local {
-            replicas
-                .into_par_iter()
-                .map(|replica| self.advance_local(replica, until))
-                .collect()
-        } else {
-            replicas
-                .into_par_iter()
-                .map(|replica| self.advance_gather(replica, until))
-                .collect()
-        };
+        let techniques = self.passes.techniques;
+        let efforts: Vec<Effort> = replicas
+            .into_par_iter()
+            .map(|replica| {
+                let mut effort = Effort::default();
+                if techniques.local > 0.0 {
+                    effort += self.advance_local(replica, until);
+                }
+                if techniques.gather {
+                    effort += self.advance_gather(replica, until);
+                }
+                replica.points = until;
+                effort
+            })
+            .collect();
         let mut total = Effort::default();
         for effort in efforts {
             total += effort;
@@ -63,23 +73,20 @@ impl<const N: usize> Engine<'_, N> {
 
     fn advance_local(&self, replica: &mut Replica, until: u64) -> Effort {
         let stream = Stream::new(self.seed, replica.id);
-        let effort = local::<N>(
+        local::<N>(
             &self.passes,
             &self.channels,
             self.receivers,
             stream,
             replica.points..until,
-            &mut replica.sums,
-        );
-        replica.points = until;
-        effort
+            &mut replica.sums[self.length()..],
+        )
     }
 
     fn advance_gather(&self, replica: &mut Replica, until: u64) -> Effort {
         let stream = Stream::new(self.seed, replica.id);
         let range = replica.points..until;
-        let efforts: Vec<Effort> = replica
-            .sums
+        let efforts: Vec<Effort> = replica.sums[..self.length()]
             .par_chunks_mut(self.channels.count)
             .zip(self.receivers)
             .enumerate()
@@ -99,7 +106,6 @@ impl<const N: usize> Engine<'_, N> {
                 )
             })
             .collect();
-        replica.points = until;
         let mut total = Effort::default();
         for effort in efforts {
             total += effort;

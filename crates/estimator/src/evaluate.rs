@@ -1,39 +1,67 @@
 //! Light along a walk, for 1, 3 or 4 Stokes components: pure, after the walk is fixed.
 //!
-//! Polarisation lives only inside chains of mirror-like reflections: a diffuse event takes the light in by an
+//! Polarisation lives only inside chains of mirrors and panes: a diffuse event takes the light in by an
 //! analyser and gives it out by a Stokes vector of its own, so between chains light is one number.
 
 use crate::emitters::{Start, State};
+use crate::medium::Step;
 use crate::receiver::Receiver;
 use crate::trace::{Connection, Event, Path, Vertex};
 use glam::DVec3;
 use malus_optics::{
     Analyser, Basis, Carried, Emergence, Incidence, Mueller, Rotator, Sensor, Stokes,
+    angle_of_incidence,
 };
 use malus_scene::Material;
 
-/// A basis and the light of an emitter in it.
-fn emitted<const N: usize>(
-    direction: DVec3,
-    state: [f64; 4],
-    axis: DVec3,
-) -> (Basis<Carried>, Stokes<N, Carried>) {
-    (Basis::new(direction, axis), Stokes::of_state(state))
-}
+/// Light on its way, per unit of what it started with, in a basis of its own; `None`: unpolarised.
+type Light<const N: usize> = Option<(Stokes<N, Carried>, Basis<Carried>)>;
 
-/// Light of unit irradiance that an emitter sends straight to a sensor, along `direction`, in the sensor's basis.
-pub(crate) fn at_sensor<const N: usize>(
-    receiver: &Receiver,
-    direction: DVec3,
-    state: State,
-) -> Stokes<N, Sensor> {
+/// Light that leaves an emitter.
+fn emitted<const N: usize>(direction: DVec3, state: State) -> Light<N> {
     match state {
         Some((state, axis)) if N > 1 => {
-            let (basis, light) = emitted(direction, *state, axis);
-            Rotator::new(&basis, &receiver.basis(direction)) * light
+            Some((Stokes::of_state(*state), Basis::new(direction, axis)))
         }
-        _ => Stokes::unpolarised(1.0),
+        _ => None,
     }
+}
+
+/// Light of unit irradiance on its way straight to a sensor, along `direction`, in the sensor's basis.
+fn at_sensor<const N: usize>(
+    receiver: &Receiver,
+    direction: DVec3,
+    light: Light<N>,
+) -> Stokes<N, Sensor> {
+    match light {
+        Some((light, basis)) => Rotator::new(&basis, &receiver.basis(direction)) * light,
+        None => Stokes::unpolarised(1.0),
+    }
+}
+
+/// The basis with the s axis of a beam that leaves a surface along `direction`.
+fn leaving(direction: DVec3, normal: DVec3) -> Basis<Emergence> {
+    let arriving = direction - normal * (2.0 * direction.dot(normal));
+    let (incidence, _) = Basis::mirror(arriving, normal);
+    Basis::new(direction, incidence.axis())
+}
+
+/// What a scattering surface sends along `direction`, for unit scattered flux.
+fn scattered<const N: usize>(material: &Material, normal: DVec3, direction: DVec3) -> Light<N> {
+    let (cos, sin2) = angle_of_incidence(direction, normal);
+    let column = material.optics.leaving::<N>(cos, sin2).carried();
+    Some((column, leaving(direction, normal).carried()))
+}
+
+/// What a scattering surface takes in of light that arrives.
+fn taken_in<const N: usize>(
+    material: &Material,
+    normal: DVec3,
+    direction: DVec3,
+) -> (Analyser<N, Incidence>, Basis<Incidence>) {
+    let (cos, sin2) = angle_of_incidence(direction, normal);
+    let (incidence, _) = Basis::mirror(direction, normal);
+    (material.optics.entering(cos, sin2), incidence)
 }
 
 /// What a sensor reads of a walk that was started from it.
@@ -44,9 +72,11 @@ pub(crate) struct Gathering<'r, const N: usize> {
     /// Product of everything passed so far that is a number.
     weight: f64,
     sum: Stokes<N, Sensor>,
+    /// S0 of light seen in mirrors, and of emitters met by chance.
+    found: [f64; 2],
 }
 
-/// The mirrors that the walk has met since its last diffuse event, as light meets them on its way to the sensor.
+/// The mirrors and panes that a walk has met since its last diffuse event, as light meets them on its way to the sensor.
 #[derive(Debug, Clone, Copy)]
 enum Chain<const N: usize> {
     /// No diffuse event yet: the whole matrix up to the sensor is needed.
@@ -54,8 +84,99 @@ enum Chain<const N: usize> {
     /// Behind a diffuse event, which sends `leaving` to the sensor: one row is enough.
     ToDiffuser {
         leaving: Stokes<N, Sensor>,
-        mirrors: Option<(Analyser<N, Incidence>, Basis<Incidence>)>,
+        row: Option<(Analyser<N, Incidence>, Basis<Incidence>)>,
     },
+}
+
+impl<const N: usize> Chain<N> {
+    /// Light that comes along a direction, once it has reached the sensor.
+    fn pass(&self, receiver: &Receiver, direction: DVec3, light: Light<N>) -> Stokes<N, Sensor> {
+        match (self, light) {
+            (Self::ToSensor(None), _) => at_sensor(receiver, direction, light),
+            (Self::ToSensor(Some((matrix, basis))), Some((light, carried))) => {
+                *matrix * (Rotator::new(&carried, basis) * light)
+            }
+            (Self::ToSensor(Some((matrix, _))), None) => *matrix * Stokes::unpolarised(1.0),
+            (Self::ToDiffuser { leaving, row: None }, light) => {
+                *leaving * light.map_or(1.0, |(light, _)| light.i())
+            }
+            (
+                Self::ToDiffuser {
+                    leaving,
+                    row: Some((row, basis)),
+                },
+                Some((light, carried)),
+            ) => *leaving * (*row * (Rotator::new(&carried, basis) * light)),
+            (
+                Self::ToDiffuser {
+                    leaving,
+                    row: Some((row, _)),
+                },
+                None,
+            ) => *leaving * (*row * Stokes::unpolarised(1.0)),
+        }
+    }
+
+    /// The chain with one more mirror or pane before it.
+    fn extended(&self, receiver: &Receiver, step: &Step) -> Self {
+        let normal = step.normal;
+        let onward = if step.through {
+            step.arriving
+        } else {
+            (step.arriving - normal * (2.0 * step.arriving.dot(normal))).normalize()
+        };
+        let (incidence, reflected) = Basis::mirror(-onward, normal);
+        let carried = if step.through {
+            Basis::<Emergence>::new(-onward, incidence.axis()).carried()
+        } else {
+            reflected.carried()
+        };
+        match self {
+            Self::ToSensor(matrix) => {
+                let onward: Mueller<N, Emergence, Sensor> = match matrix {
+                    None => {
+                        let sensor = receiver.basis(carried.direction());
+                        Mueller::from(Rotator::new(&carried, &sensor)).emergent()
+                    }
+                    Some((matrix, basis)) => (*matrix * Rotator::new(&carried, basis)).emergent(),
+                };
+                Self::ToSensor(Some((onward * step.matrix, incidence)))
+            }
+            Self::ToDiffuser { leaving, row } => {
+                let onward: Analyser<N, Emergence> = match row {
+                    None => Analyser::intensity(),
+                    Some((row, basis)) => (*row * Rotator::new(&carried, basis)).emergent(),
+                };
+                Self::ToDiffuser {
+                    leaving: *leaving,
+                    row: Some((onward * step.matrix, incidence)),
+                }
+            }
+        }
+    }
+
+    /// The chain behind a scattering surface that sends light against `arriving`, for light that comes to it against
+    /// `toward`.
+    fn behind(
+        &self,
+        receiver: &Receiver,
+        material: &Material,
+        vertex: &Vertex,
+        toward: DVec3,
+    ) -> Self {
+        let direction = -vertex.arriving;
+        if material.optics.polarises_scattering() {
+            let light = scattered(material, vertex.normal, direction);
+            return Self::ToDiffuser {
+                leaving: self.pass(receiver, direction, light),
+                row: Some(taken_in(material, vertex.normal, -toward)),
+            };
+        }
+        Self::ToDiffuser {
+            leaving: self.pass(receiver, direction, None),
+            row: None,
+        }
+    }
 }
 
 impl<'r, const N: usize> Gathering<'r, N> {
@@ -67,6 +188,7 @@ impl<'r, const N: usize> Gathering<'r, N> {
             chain: Chain::ToSensor(None),
             weight: 1.0,
             sum: Stokes::unpolarised(0.0),
+            found: [0.0; 2],
         }
     }
 
@@ -76,122 +198,82 @@ impl<'r, const N: usize> Gathering<'r, N> {
         self.sum.components()
     }
 
-    /// Light that the sensor sees straight.
-    pub(crate) fn connect(&mut self, connection: Option<&Connection>) {
-        if let Some(connection) = connection {
-            let incoming = &connection.incoming;
-            self.sum +=
-                at_sensor(self.receiver, -incoming.toward, incoming.state) * connection.irradiance;
+    /// Of S0, what was seen in mirrors and what was met by chance.
+    #[must_use]
+    pub(crate) fn found(&self) -> [f64; 2] {
+        self.found
+    }
+
+    /// Light that the sensor sees before the walk has left it.
+    pub(crate) fn look(&mut self, path: &Path) {
+        for connection in &path.connections {
+            let chain = self.chain;
+            self.connect(path, connection, chain, 1.0);
         }
     }
 
     /// Light met along the next vertices of the walk.
     pub(crate) fn follow(&mut self, path: &Path, materials: &[Material]) {
-        for vertex in path {
+        for vertex in &path.vertices {
             let material = &materials[vertex.material as usize];
             if vertex.emission > 0.0
                 && let Some(emission) = &material.emission
             {
-                let exitance = emission.exitance * vertex.emission;
-                self.receive(
-                    exitance,
-                    -vertex.arriving,
-                    crate::emitters::emitted_state(material),
-                );
+                let direction = -vertex.arriving;
+                let light = emitted(direction, crate::emitters::emitted_state(material));
+                let read = self.chain.pass(self.receiver, direction, light)
+                    * (self.weight
+                        * emission.exitance
+                        * vertex.emission
+                        * self.receiver.per_exitance);
+                self.found[1] += read.i();
+                self.sum += read;
             }
             if vertex.black {
                 return;
             }
-            let albedo = material.optics.albedo();
-            if let Some(connection) = &vertex.connection {
-                self.receive(albedo * connection.irradiance, -vertex.arriving, None);
+            let scattering = material.optics.scattering();
+            for connection in &path.connections[vertex.connections.clone()] {
+                let chain = self
+                    .chain
+                    .behind(self.receiver, material, vertex, connection.toward);
+                let weight = scattering * self.receiver.per_exitance;
+                self.connect(path, connection, chain, weight);
             }
             match vertex.event {
                 Event::Absorbed => return,
-                Event::Diffuse => self.scatter(albedo / vertex.probability, -vertex.arriving),
-                Event::Mirror => self.reflect(vertex),
+                Event::Diffuse => {
+                    self.chain = self
+                        .chain
+                        .behind(self.receiver, material, vertex, vertex.onward);
+                    self.weight *= scattering / vertex.probability;
+                }
+                Event::Mirror | Event::Through => {
+                    let step = Step {
+                        normal: vertex.normal,
+                        arriving: vertex.arriving,
+                        matrix: vertex.matrix,
+                        through: vertex.event == Event::Through,
+                    };
+                    self.chain = self.chain.extended(self.receiver, &step);
+                    self.weight /= vertex.probability;
+                }
             }
         }
     }
 
-    /// Adds light that leaves a surface along `direction` with the given exitance.
-    fn receive(&mut self, exitance: f64, direction: DVec3, state: State) {
-        self.sum += self.at_sensor(direction, state) * (self.weight * exitance);
-    }
-
-    /// Light of unit exitance that leaves a surface along `direction`, once it has reached the sensor.
-    fn at_sensor(&self, direction: DVec3, state: State) -> Stokes<N, Sensor> {
-        match (&self.chain, state) {
-            (Chain::ToSensor(None), _) => at_sensor(self.receiver, direction, state),
-            (Chain::ToSensor(Some((mirrors, basis))), Some((state, axis))) if N > 1 => {
-                let (carried, light) = emitted(direction, *state, axis);
-                *mirrors * (Rotator::new(&carried, basis) * light)
-            }
-            (Chain::ToSensor(Some((mirrors, _))), _) => *mirrors * Stokes::unpolarised(1.0),
-            (
-                Chain::ToDiffuser {
-                    leaving,
-                    mirrors: None,
-                },
-                _,
-            ) => *leaving,
-            (
-                Chain::ToDiffuser {
-                    leaving,
-                    mirrors: Some((row, basis)),
-                },
-                Some((state, axis)),
-            ) if N > 1 => {
-                let (carried, light) = emitted(direction, *state, axis);
-                *leaving * (*row * (Rotator::new(&carried, basis) * light))
-            }
-            (
-                Chain::ToDiffuser {
-                    leaving,
-                    mirrors: Some((row, _)),
-                },
-                _,
-            ) => *leaving * (*row * Stokes::unpolarised(1.0)),
+    /// Adds the light of a connection, which goes on by the `chain`.
+    fn connect(&mut self, path: &Path, connection: &Connection, mut chain: Chain<N>, weight: f64) {
+        for step in &path.steps[connection.steps.clone()] {
+            chain = chain.extended(self.receiver, step);
         }
-    }
-
-    /// Passes a diffuse event: what lies behind it reaches the sensor as one number.
-    fn scatter(&mut self, weight: f64, direction: DVec3) {
-        let leaving = self.at_sensor(direction, None);
-        self.weight *= weight;
-        self.chain = Chain::ToDiffuser {
-            leaving,
-            mirrors: None,
-        };
-    }
-
-    /// Passes a mirror: light arrives there along the reversed reflected direction of the walk.
-    fn reflect(&mut self, vertex: &Vertex) {
-        self.weight /= vertex.probability;
-        let normal = vertex.normal;
-        let onward = vertex.arriving - normal * (2.0 * vertex.arriving.dot(normal));
-        let (incidence, emergence) = Basis::mirror(-onward.normalize(), normal);
-        let carried = emergence.carried();
-        let receiver = self.receiver;
-        match &mut self.chain {
-            Chain::ToSensor(mirrors) => {
-                let onward: Mueller<N, Emergence, Sensor> = match mirrors {
-                    None => {
-                        let sensor = receiver.basis(carried.direction());
-                        Mueller::from(Rotator::new(&carried, &sensor)).emergent()
-                    }
-                    Some((matrix, basis)) => (*matrix * Rotator::new(&carried, basis)).emergent(),
-                };
-                *mirrors = Some((onward * vertex.mirror, incidence));
-            }
-            Chain::ToDiffuser { mirrors, .. } => {
-                let onward: Analyser<N, Emergence> = match mirrors {
-                    None => Analyser::intensity(),
-                    Some((row, basis)) => (*row * Rotator::new(&carried, basis)).emergent(),
-                };
-                *mirrors = Some((onward * vertex.mirror, incidence));
-            }
+        let light = emitted(connection.leaving, connection.state);
+        let read = chain.pass(self.receiver, connection.leaving, light)
+            * (self.weight * weight * connection.irradiance);
+        if connection.mirrored {
+            self.found[0] += read.i();
         }
+        self.sum += read;
     }
 }
 
@@ -201,61 +283,150 @@ pub(crate) struct Carrying<const N: usize> {
     /// Flux, a number between chains of mirrors.
     flux: f64,
     /// Inside a chain, or from a polarised emitter: the light per flux, with its basis. `None`: unpolarised.
-    light: Option<(Stokes<N, Carried>, Basis<Carried>)>,
+    light: Light<N>,
 }
 
 impl<const N: usize> Carrying<N> {
     /// What the emitter sends off.
     #[must_use]
     pub(crate) fn new(start: &Start) -> Self {
-        let light = match start.state {
-            Some((state, axis)) if N > 1 => {
-                let (basis, light) = emitted(start.direction, *state, axis);
-                Some((light, basis))
-            }
-            _ => None,
-        };
         Self {
             flux: start.flux,
-            light,
+            light: emitted(start.direction, start.site.state),
         }
     }
 
-    /// Passes the vertices of a walk; `scattered` is told the number and the diffusely scattered flux of each.
+    /// Passes the vertices of a walk; `told` is given the number of each and the flux that it scatters.
     pub(crate) fn follow(
         &mut self,
         path: &Path,
         materials: &[Material],
-        mut scattered: impl FnMut(usize, f64),
+        mut told: impl FnMut(usize, f64),
     ) {
-        for (index, vertex) in path.iter().enumerate() {
+        for (index, vertex) in path.vertices.iter().enumerate() {
             if vertex.black {
                 return;
             }
-            let albedo = materials[vertex.material as usize].optics.albedo();
-            // A diffuse event takes the light in by its first component: a total depolariser.
-            let arriving = self.flux * self.light.map_or(1.0, |(light, _)| light.i());
-            if albedo > 0.0 {
-                scattered(index, albedo * arriving);
+            let material = &materials[vertex.material as usize];
+            let optics = &material.optics;
+            let scattering = optics.scattering();
+            let mut taken = 0.0;
+            if scattering > 0.0 {
+                taken = scattering * self.taken(material, vertex);
+                told(index, taken);
             }
             match vertex.event {
                 Event::Absorbed => return,
                 Event::Diffuse => {
-                    self.flux = arriving * (albedo / vertex.probability);
-                    self.light = None;
+                    self.flux = taken / vertex.probability;
+                    self.light = if optics.polarises_scattering() {
+                        scattered(material, vertex.normal, vertex.onward)
+                    } else {
+                        None
+                    };
                 }
-                Event::Mirror => self.reflect(vertex),
+                Event::Mirror | Event::Through => self.pass(vertex),
             }
         }
     }
 
-    fn reflect(&mut self, vertex: &Vertex) {
-        self.flux /= vertex.probability;
-        let (incidence, emergence) = Basis::mirror(vertex.arriving, vertex.normal);
-        let arriving: Stokes<N, Incidence> = match self.light {
+    /// The flux that a scattering surface takes in: a diffuse event is a total depolariser of what enters.
+    fn taken(&self, material: &Material, vertex: &Vertex) -> f64 {
+        if !material.optics.polarises_scattering() {
+            return self.flux * self.light.map_or(1.0, |(light, _)| light.i());
+        }
+        let (row, incidence) = taken_in::<N>(material, vertex.normal, vertex.arriving);
+        let arriving = match self.light {
             Some((light, basis)) => Rotator::new(&basis, &incidence) * light,
             None => Stokes::unpolarised(1.0),
         };
-        self.light = Some(((vertex.mirror * arriving).carried(), emergence.carried()));
+        self.flux * (row * arriving)
     }
+
+    fn pass(&mut self, vertex: &Vertex) {
+        self.flux /= vertex.probability;
+        let through = vertex.event == Event::Through;
+        self.light = Some(passed(
+            self.light,
+            vertex.arriving,
+            vertex.normal,
+            vertex.matrix,
+            through,
+        ));
+    }
+}
+
+/// Light once it has passed a mirror or a pane, on its way along `arriving`.
+fn passed<const N: usize>(
+    light: Light<N>,
+    arriving: DVec3,
+    normal: DVec3,
+    matrix: malus_optics::Reflection,
+    through: bool,
+) -> (Stokes<N, Carried>, Basis<Carried>) {
+    let (incidence, reflected) = Basis::mirror(arriving, normal);
+    let onward = if through {
+        Basis::<Emergence>::new(arriving, incidence.axis())
+    } else {
+        reflected
+    };
+    let arriving: Stokes<N, Incidence> = match light {
+        Some((light, basis)) => Rotator::new(&basis, &incidence) * light,
+        None => Stokes::unpolarised(1.0),
+    };
+    ((matrix * arriving).carried(), onward.carried())
+}
+
+/// Light of an emitter, of unit irradiance, that a sensor sees past the panes it has looked through.
+pub(crate) fn seen<const N: usize>(
+    receiver: &Receiver,
+    direction: DVec3,
+    state: State,
+    steps: &[Step],
+) -> Stokes<N, Sensor> {
+    let chain = steps.iter().fold(Chain::ToSensor(None), |chain, step| {
+        chain.extended(receiver, step)
+    });
+    chain.pass(receiver, direction, emitted(direction, state))
+}
+
+/// Light of an emitter, of unit irradiance, that goes through mirrors and panes to a sensor.
+pub(crate) fn sent<const N: usize>(
+    receiver: &Receiver,
+    direction: DVec3,
+    state: State,
+    steps: &[Step],
+) -> Stokes<N, Sensor> {
+    delivered(receiver, direction, emitted(direction, state), steps)
+}
+
+/// What a scattering surface sends along `direction` to a sensor through mirrors and panes, for unit scattered flux.
+pub(crate) fn joined<const N: usize>(
+    receiver: &Receiver,
+    material: &Material,
+    normal: DVec3,
+    direction: DVec3,
+    steps: &[Step],
+) -> Stokes<N, Sensor> {
+    let light = if material.optics.polarises_scattering() {
+        scattered(material, normal, direction)
+    } else {
+        None
+    };
+    delivered(receiver, direction, light, steps)
+}
+
+fn delivered<const N: usize>(
+    receiver: &Receiver,
+    direction: DVec3,
+    mut light: Light<N>,
+    steps: &[Step],
+) -> Stokes<N, Sensor> {
+    let mut direction = direction;
+    for step in steps {
+        let (next, basis) = passed(light, step.arriving, step.normal, step.matrix, step.through);
+        direction = basis.direction();
+        light = Some((next, basis));
+    }
+    at_sensor(receiver, direction, light)
 }

@@ -1,8 +1,8 @@
 //! The part of the answer that needs no chance: light straight from sources without geometry.
 
-use crate::evaluate::at_sensor;
+use crate::evaluate::seen;
+use crate::medium::Medium;
 use crate::receiver::Receiver;
-use crate::trace::{Medium, unobstructed};
 use glam::DVec3;
 
 /// Irradiance Stokes vector at each receiver from all point, spot and distant sources that it sees, in unit/m².
@@ -21,17 +21,31 @@ fn from_sources_at<const N: usize>(medium: &Medium, receiver: &Receiver) -> [f64
     if receiver.enclosed {
         return sum;
     }
+    if !receiver.is_irradiance() {
+        return sum;
+    }
+    let mut steps = Vec::new();
     for index in 0..medium.emitters.source_count() {
-        let Some(incoming) = medium.emitters.light_of_source(index, receiver.origin) else {
-            continue;
-        };
-        let cos = incoming.toward.dot(receiver.normal);
-        if cos <= 0.0 || !unobstructed(medium.surfaces, receiver.origin, &incoming) {
+        let site = medium.emitters.site_of_source(index, 1.0);
+        let span = site
+            .from
+            .map_or(-site.direction(), |from| from - receiver.origin);
+        let square = span.length_squared();
+        let toward = span / square.sqrt();
+        let irradiance = site.irradiance(-toward, square) * toward.dot(receiver.normal);
+        // A point at the source itself has no direction to it.
+        if !(irradiance > 0.0 && irradiance.is_finite()) {
             continue;
         }
-        let light = at_sensor::<N>(receiver, -incoming.toward, incoming.state);
-        for (sum, component) in sum.iter_mut().zip(light.components()) {
-            *sum += component * (incoming.irradiance * cos);
+        steps.clear();
+        if medium
+            .passage(receiver.origin, site.from, toward, &mut steps)
+            .is_some()
+        {
+            let light = seen::<N>(receiver, -toward, site.state, &steps);
+            for (sum, component) in sum.iter_mut().zip(light.components()) {
+                *sum += component * irradiance;
+            }
         }
     }
     sum

@@ -1,9 +1,10 @@
-//! Walks from the sensors, against the light: at every vertex one emitter is looked at, and emitters met by chance
-//! count where looking could not, or was less likely to, find them.
+//! Walks from the sensors, against the light: at every vertex one emitter is looked at, straight and in mirrors, and
+//! emitters met by chance count where looking could not, or was less likely to, find them.
 
 use crate::evaluate::Gathering;
+use crate::medium::Medium;
 use crate::pass::{Channels, Effort, Passes};
-use crate::random::Stream;
+use crate::random::{Stream, Uniforms};
 use crate::receiver::Receiver;
 use crate::trace::{Path, Walk};
 use std::ops::Range;
@@ -17,57 +18,100 @@ pub(crate) fn gather<const N: usize>(
     range: Range<u64>,
     sums: &mut [f64],
 ) -> Effort {
-    let Receiver { origin, normal, .. } = *receiver;
     let materials = passes.main.materials;
     let mut effort = Effort::default();
-    let mut path = Path::new();
+    let mut path = Path::default();
     for index in range {
         let uniforms = stream.walk(index);
-        let mut walk = Walk::from_sensor(passes.main, uniforms, origin, normal);
-        let direct = walk.first_connection(normal);
-        effort.rays += 1;
         let mut main = Gathering::<N>::new(receiver);
-        main.connect(direct.as_ref());
         if let Some(channel) = channels.along {
             let mut scalar = Gathering::<1>::new(receiver);
-            scalar.connect(direct.as_ref());
-            effort += follow(&mut walk, &mut path, |path| {
-                main.follow(path, materials);
-                scalar.follow(path, materials);
-            });
+            effort += follow(
+                passes,
+                &passes.main,
+                receiver,
+                uniforms,
+                &mut path,
+                |path, first| {
+                    if first {
+                        main.look(path);
+                        scalar.look(path);
+                    } else {
+                        main.follow(path, materials);
+                        scalar.follow(path, materials);
+                    }
+                },
+            );
             sums[channel] += scalar.sum()[0];
         } else {
-            effort += follow(&mut walk, &mut path, |path| main.follow(path, materials));
+            effort += follow(
+                passes,
+                &passes.main,
+                receiver,
+                uniforms,
+                &mut path,
+                |path, first| {
+                    if first {
+                        main.look(path);
+                    } else {
+                        main.follow(path, materials);
+                    }
+                },
+            );
         }
         for (sum, value) in sums.iter_mut().zip(main.sum()) {
             *sum += value;
         }
-        if let (Some(medium), Some(channel)) = (passes.apart, channels.apart) {
-            let mut walk = Walk::from_sensor(medium, uniforms, origin, normal);
+        for (sum, value) in sums[channels.found..].iter_mut().zip(main.found()) {
+            *sum += value;
+        }
+        if let (Some(medium), Some(channel)) = (&passes.apart, channels.apart) {
             let mut apart = Gathering::<1>::new(receiver);
-            apart.connect(direct.as_ref());
-            effort += follow(&mut walk, &mut path, |path| {
-                apart.follow(path, medium.materials);
-            });
+            effort += follow(
+                passes,
+                medium,
+                receiver,
+                uniforms,
+                &mut path,
+                |path, first| {
+                    if first {
+                        apart.look(path);
+                    } else {
+                        apart.follow(path, medium.materials);
+                    }
+                },
+            );
             sums[channel] += apart.sum()[0];
         }
     }
     effort
 }
 
-/// Takes a walk to its end, piece by piece.
-fn follow<'a>(
-    walk: &mut Walk<'a>,
+/// Takes a walk to its end, piece by piece; `evaluate` is given first what the sensor itself sees.
+pub(crate) fn follow<'a>(
+    passes: &Passes<'a>,
+    medium: &Medium<'a>,
+    receiver: &Receiver,
+    uniforms: Uniforms,
     path: &mut Path<'a>,
-    mut evaluate: impl FnMut(&Path<'a>),
+    mut evaluate: impl FnMut(&Path<'a>, bool),
 ) -> Effort {
-    let mut rays = 0;
+    let Receiver { origin, normal, .. } = *receiver;
+    path.clear();
+    let mut walk = if receiver.is_irradiance() {
+        Walk::from_sensor(*medium, passes.techniques, uniforms, origin, normal)
+    } else {
+        Walk::along_sight(*medium, passes.techniques, uniforms, origin, normal)
+    };
+    walk.look(path);
+    let mut rays = 1;
+    evaluate(path, true);
     loop {
         path.clear();
         let more = walk.advance(path);
-        evaluate(path);
+        evaluate(path, false);
         // Each vertex costs the segment that led to it and one look at an emitter.
-        rays += 2 * path.len() as u64;
+        rays += 2 * path.vertices.len() as u64;
         if !more {
             return Effort {
                 rays,

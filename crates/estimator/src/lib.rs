@@ -4,6 +4,7 @@
 //! state of light) and evaluated afterwards for 1, 3 or 4 Stokes components and for several models at
 //! once. The crate reads no files, prints nothing and knows no clock.
 
+mod beam;
 mod choose;
 mod direction;
 mod emitters;
@@ -11,7 +12,11 @@ mod engine;
 mod evaluate;
 mod exact;
 mod gather;
+mod launched;
 mod local;
+mod lookout;
+mod medium;
+mod mirrors;
 mod pass;
 mod random;
 mod reading;
@@ -21,6 +26,6 @@ mod run;
 mod statistics;
 mod trace;
 
-pub use results::{Answer, Group, Paired, Progress, Reading, Results, Stop};
+pub use results::{Answer, Group, Paired, Progress, Reading, Results, Shares, Stop};
 pub use run::run;
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};

@@ -1,13 +1,15 @@
 //! The paper's estimator (eqs. 19–21): walks from the emitters, and at every vertex a local estimate to every sensor.
 
 use crate::emitters::Start;
-use crate::evaluate::{Carrying, at_sensor};
+use crate::evaluate::{Carrying, joined, sent};
+use crate::medium::{Medium, Step};
+use crate::mirrors::{Target, Viewer};
 use crate::pass::{Channels, Effort, Passes};
-use crate::random::Stream;
+use crate::random::{Stream, Uniforms};
 use crate::receiver::Receiver;
-use crate::trace::{Medium, Path, Walk};
+use crate::trace::{Path, Techniques, Vertex, Walk};
 use glam::DVec3;
-use malus_geometry::Surfaces;
+use malus_optics::angle_of_incidence;
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -20,7 +22,6 @@ pub(crate) fn local<'a, const N: usize>(
     range: Range<u64>,
     sums: &mut [f64],
 ) -> Effort {
-    let surfaces = passes.main.surfaces;
     let mut effort = Effort::default();
     for index in range {
         let uniforms = stream.walk(index);
@@ -28,52 +29,60 @@ pub(crate) fn local<'a, const N: usize>(
         let Some(start) = passes.main.emitters.start(uniforms) else {
             continue;
         };
-        effort += emit::<N>(passes, channels, receivers, &start, sums);
-
-        let walk = |medium: Medium<'a>| {
-            Walk::from_emitter(medium, uniforms, start.origin, start.direction)
+        // Where walks from the sensors look at emitters, they alone answer for light that comes straight.
+        if !passes.techniques.gather {
+            effort += emit::<N>(passes, channels, receivers, &start, sums);
+        }
+        let joining = Joining {
+            techniques: passes.techniques,
+            receivers,
+            uniforms,
         };
         let mut main = Carrying::<N>::new(&start);
         if let Some(channel) = channels.along {
             let mut scalar = Carrying::<1>::new(&start);
-            effort += follow(
-                surfaces,
-                walk(passes.main),
-                receivers,
-                |path, exitances| {
-                    main.follow(path, passes.main.materials, |i, m| exitances[i][0] = m);
-                    scalar.follow(path, passes.main.materials, |i, m| exitances[i][1] = m);
+            effort += joining.follow::<N, 2>(
+                passes.main,
+                &start,
+                |path, fluxes| {
+                    main.follow(path, passes.main.materials, |i, flux| fluxes[i][0] = flux);
+                    scalar.follow(path, passes.main.materials, |i, flux| fluxes[i][1] = flux);
                 },
-                |sensor, [one, two]| {
-                    sums[sensor * channels.count] += one;
-                    sums[sensor * channels.count + channel] += two;
+                |sensor, [one, two], light, scalar| {
+                    let sums = &mut sums[sensor * channels.count..];
+                    add(sums, one, light);
+                    sums[channel] += two * scalar;
                 },
             );
         } else {
-            effort += follow(
-                surfaces,
-                walk(passes.main),
-                receivers,
-                |path, exitances| {
-                    main.follow(path, passes.main.materials, |i, m| exitances[i][0] = m);
+            effort += joining.follow::<N, 1>(
+                passes.main,
+                &start,
+                |path, fluxes| {
+                    main.follow(path, passes.main.materials, |i, flux| fluxes[i][0] = flux);
                 },
-                |sensor, [one]| sums[sensor * channels.count] += one,
+                |sensor, [one], light, _| add(&mut sums[sensor * channels.count..], one, light),
             );
         }
         if let (Some(medium), Some(channel)) = (passes.apart, channels.apart) {
             let mut apart = Carrying::<1>::new(&start);
-            effort += follow(
-                surfaces,
-                walk(medium),
-                receivers,
-                |path, exitances| {
-                    apart.follow(path, medium.materials, |i, m| exitances[i][0] = m);
+            effort += joining.follow::<1, 1>(
+                medium,
+                &start,
+                |path, fluxes| {
+                    apart.follow(path, medium.materials, |i, flux| fluxes[i][0] = flux);
                 },
-                |sensor, [one]| sums[sensor * channels.count + channel] += one,
+                |sensor, [one], [light], _| sums[sensor * channels.count + channel] += one * light,
             );
         }
     }
     effort
+}
+
+fn add<const N: usize>(sums: &mut [f64], flux: f64, light: [f64; N]) {
+    for (sum, component) in sums.iter_mut().zip(light) {
+        *sum += flux * component;
+    }
 }
 
 /// The local estimate at the point of emission itself. A source without geometry has none: it is summed exactly.
@@ -87,17 +96,19 @@ fn emit<const N: usize>(
     let Some(normal) = start.normal else {
         return Effort::default();
     };
+    let mut steps = Vec::new();
     for (receiver, sums) in receivers.iter().zip(sums.chunks_mut(channels.count)) {
-        let Some(coupling) = coupling(passes.main.surfaces, start.origin, normal, receiver) else {
+        steps.clear();
+        let way = straight(&passes.main, start.origin, normal, receiver, &mut steps);
+        let Some(way) = way else {
             continue;
         };
-        let direction = (receiver.origin - start.origin).normalize();
-        let stokes = at_sensor::<N>(receiver, direction, start.state).components();
-        for (sum, component) in sums.iter_mut().zip(stokes) {
-            *sum += start.flux * coupling * component;
-        }
+        let flux = start.flux * way.coupling;
+        let light = sent::<N>(receiver, way.direction, start.site.state, &steps);
+        add(sums, flux, light.components());
         for channel in [channels.along, channels.apart].into_iter().flatten() {
-            sums[channel] += start.flux * coupling;
+            let light = sent::<1>(receiver, way.direction, None, &steps);
+            sums[channel] += flux * light.i();
         }
     }
     Effort {
@@ -106,48 +117,171 @@ fn emit<const N: usize>(
     }
 }
 
-/// Takes a walk to its end and joins each diffuse vertex to every sensor.
-///
-/// `evaluate` fills in what each vertex of a path sends out, for K models; `add` receives the irradiance at a sensor.
-fn follow<'a, const K: usize>(
-    surfaces: &Surfaces,
-    mut walk: Walk<'a>,
-    receivers: &[Receiver],
-    mut evaluate: impl FnMut(&Path<'a>, &mut [[f64; K]]),
-    mut add: impl FnMut(usize, [f64; K]),
-) -> Effort {
-    let mut effort = Effort::default();
-    let mut path = Path::new();
-    let mut exitances = Vec::new();
-    loop {
-        path.clear();
-        let more = walk.advance(&mut path);
-        effort.rays += path.len() as u64;
-        exitances.clear();
-        exitances.resize(path.len(), [0.0; K]);
-        evaluate(&path, &mut exitances);
-        for (vertex, exitance) in path.iter().zip(&exitances) {
-            if exitance.iter().all(|&m| m <= 0.0) {
-                continue;
-            }
-            effort.rays += receivers.len() as u64;
-            for (sensor, receiver) in receivers.iter().enumerate() {
-                let coupling = coupling(surfaces, vertex.position, vertex.normal, receiver);
-                if let Some(coupling) = coupling {
-                    add(sensor, exitance.map(|m| m * coupling));
+/// Joins the vertices of walks to sensors.
+#[derive(Clone, Copy)]
+struct Joining<'r> {
+    techniques: Techniques,
+    receivers: &'r [Receiver],
+    uniforms: Uniforms,
+}
+
+/// A way on which a point is joined to a sensor.
+struct Way {
+    /// Direction at the point.
+    direction: DVec3,
+    /// cos θ cos θ′/(π r²), in 1/m².
+    coupling: f64,
+    /// Probability of passing the panes on the way.
+    odds: f64,
+}
+
+impl Joining<'_> {
+    /// Takes a walk to its end and joins each diffuse vertex to every sensor.
+    ///
+    /// `evaluate` fills in the flux that each vertex of a path takes in, for K models; `add` receives the index of a
+    /// sensor, the flux per area there, and the Stokes vector and the intensity that arrive for one unit of it.
+    fn follow<'a, const N: usize, const K: usize>(
+        &self,
+        medium: Medium<'a>,
+        start: &Start<'a>,
+        mut evaluate: impl FnMut(&Path<'a>, &mut [[f64; K]]),
+        mut add: impl FnMut(usize, [f64; K], [f64; N], f64),
+    ) -> Effort {
+        let mut walk = Walk::from_emitter(medium, self.techniques, self.uniforms, start);
+        let mut effort = Effort::default();
+        let mut path = Path::default();
+        let mut fluxes = Vec::new();
+        let mut depth = 0;
+        loop {
+            path.clear();
+            let more = walk.advance(&mut path);
+            effort.rays += path.vertices.len() as u64;
+            fluxes.clear();
+            fluxes.resize(path.vertices.len(), [0.0; K]);
+            evaluate(&path, &mut fluxes);
+            for (vertex, flux) in path.vertices.iter().zip(&fluxes) {
+                depth += 1;
+                if flux.iter().any(|&f| f > 0.0) {
+                    effort.rays += self.receivers.len() as u64;
+                    self.join(&medium, vertex, depth, |sensor, weight, light, scalar| {
+                        add(sensor, flux.map(|f| f * weight), light, scalar);
+                    });
                 }
             }
+            if !more {
+                effort.truncated += u64::from(walk.truncated);
+                return effort;
+            }
         }
-        if !more {
-            effort.truncated += u64::from(walk.truncated);
-            return effort;
+    }
+
+    fn join<const N: usize>(
+        &self,
+        medium: &Medium,
+        vertex: &Vertex,
+        depth: u32,
+        mut add: impl FnMut(usize, f64, [f64; N], f64),
+    ) {
+        let material = &medium.materials[vertex.material as usize];
+        let polarises = material.optics.polarises_scattering();
+        let diffuse = |direction| {
+            let (cos, sin2) = angle_of_incidence(direction, vertex.normal);
+            material.optics.diffuse_bound(cos, sin2)
+        };
+        let even = diffuse(vertex.normal);
+        let mut steps: Vec<Step> = Vec::new();
+        let read = |receiver: &Receiver, way: &Way, steps: &[Step]| {
+            if steps.is_empty() && !polarises {
+                let mut light = [0.0; N];
+                light[0] = 1.0;
+                return (light, 1.0);
+            }
+            let (normal, direction) = (vertex.normal, way.direction);
+            let light = joined::<N>(receiver, material, normal, direction, steps);
+            let scalar = joined::<1>(receiver, material, normal, direction, steps);
+            (light.components(), scalar.i())
+        };
+        for (sensor, receiver) in self.receivers.iter().enumerate() {
+            steps.clear();
+            let way = straight(medium, vertex.position, vertex.normal, receiver, &mut steps);
+            if let Some(way) = way {
+                let mut weight = way.coupling;
+                if self.techniques.gather {
+                    let diffuse = if polarises {
+                        diffuse(way.direction)
+                    } else {
+                        even
+                    };
+                    let coupling = way.coupling * way.odds;
+                    weight *= vertex
+                        .rival
+                        .weight(coupling, diffuse, self.techniques.local);
+                }
+                let (light, scalar) = read(receiver, &way, &steps);
+                add(sensor, weight, light, scalar);
+            }
+            if vertex.rival.alone && self.techniques.mirrored && !receiver.enclosed {
+                self.mirrored(medium, vertex, depth, receiver, |way, steps| {
+                    let (light, scalar) = read(receiver, way, steps);
+                    add(sensor, way.coupling, light, scalar);
+                });
+            }
         }
+    }
+
+    /// Joins a vertex to a sensor by chains of flat mirrors: only where no walk from the sensor can find its light.
+    fn mirrored(
+        &self,
+        medium: &Medium,
+        vertex: &Vertex,
+        depth: u32,
+        receiver: &Receiver,
+        mut found: impl FnMut(&Way, &[Step]),
+    ) {
+        if !receiver.is_irradiance() {
+            return;
+        }
+        let viewer = Viewer {
+            point: vertex.position,
+            normal: vertex.normal,
+            sensor: false,
+        };
+        let strength = |leaving: DVec3, square: f64| leaving.dot(receiver.normal).max(0.0) / square;
+        let target = Target {
+            at: receiver.origin,
+            finite: true,
+            strength: &strength,
+        };
+        medium
+            .mirrors
+            .draw(&viewer, &target, self.uniforms, depth, |chain| {
+                let mut steps = Vec::new();
+                let Some((direction, square, passage)) =
+                    medium.chained(&viewer, &target, &chain.facets, &mut steps)
+                else {
+                    return;
+                };
+                let cosines = direction.dot(vertex.normal) * -passage.arriving.dot(receiver.normal);
+                let way = Way {
+                    direction,
+                    coupling: cosines.max(0.0) / (PI * square) * chain.inverse,
+                    odds: passage.odds,
+                };
+                found(&way, &steps);
+            });
     }
 }
 
-/// Irradiance at the receiver per flux scattered by Lambert's law at a point: cos θ cos θ′ Θ/(π |r − r′|²) (eq. 16).
-fn coupling(surfaces: &Surfaces, from: DVec3, normal: DVec3, receiver: &Receiver) -> Option<f64> {
-    if receiver.enclosed {
+/// The way straight from a point to a receiver, by panes at most: irradiance there per flux scattered by Lambert's law,
+/// cos θ cos θ′ Θ/(π |r − r′|²) (eq. 16).
+fn straight(
+    medium: &Medium,
+    from: DVec3,
+    normal: DVec3,
+    receiver: &Receiver,
+    steps: &mut Vec<Step>,
+) -> Option<Way> {
+    if receiver.enclosed || !receiver.is_irradiance() {
         return None;
     }
     let segment = receiver.origin - from;
@@ -157,7 +291,11 @@ fn coupling(surfaces: &Surfaces, from: DVec3, normal: DVec3, receiver: &Receiver
         return None;
     }
     let square = segment.length_squared();
-    surfaces
-        .visible(from, receiver.origin)
-        .then(|| leaving * arriving / (PI * square * square))
+    let direction = segment / square.sqrt();
+    let passage = medium.passage(from, Some(receiver.origin), direction, steps)?;
+    Some(Way {
+        direction,
+        coupling: leaving * arriving / (PI * square * square),
+        odds: passage.odds,
+    })
 }

@@ -1,7 +1,9 @@
 //! Which models one run computes, and which walks serve which of them.
 
 use crate::emitters::Emitters;
-use crate::trace::Medium;
+use crate::medium::Medium;
+use crate::mirrors::Mirrors;
+use crate::trace::Techniques;
 use malus_optics::Representation;
 use malus_scene::{Material, Model, Scene, Settings};
 use std::ops::AddAssign;
@@ -19,7 +21,9 @@ pub(crate) struct Channels {
     pub along: Option<usize>,
     /// A model that needs walks of its own.
     pub apart: Option<usize>,
-    /// Sums a sensor.
+    /// First of the two parts of S0 that walks from sensors found in mirrors and met by chance.
+    pub found: usize,
+    /// Sums a sensor, for each of the two kinds of walk.
     pub count: usize,
 }
 
@@ -38,7 +42,8 @@ impl Channels {
             diffuse: None,
             along: None,
             apart: None,
-            count: components,
+            found: components,
+            count: components + 2,
         };
         if settings.compare_scalar {
             channels.scalar = Some(match settings.model {
@@ -99,24 +104,34 @@ pub(crate) struct Passes<'a> {
     pub main: Medium<'a>,
     /// Walks for the model that needs its own, by the same random numbers.
     pub apart: Option<Medium<'a>>,
+    /// How they find light.
+    pub techniques: Techniques,
 }
 
-impl<'a> Passes<'a> {
-    /// Walks through the materials of the main model, and through `apart` where that is given.
-    pub(crate) fn new(
-        scene: &'a Scene,
-        emitters: &'a Emitters<'a>,
-        main: &'a [Material],
-        apart: Option<&'a [Material]>,
-    ) -> Self {
-        let medium = |materials| Medium {
-            surfaces: &scene.surfaces,
-            materials,
-            emitters,
-        };
+/// What one model has of a scene: its materials, and the flat mirrors among them.
+pub(crate) struct Modelled {
+    materials: Vec<Material>,
+    mirrors: Mirrors,
+}
+
+impl Modelled {
+    /// The scene as a model has it.
+    pub(crate) fn new(scene: &Scene, model: Model) -> Self {
+        let materials = materials_of(model, &scene.materials);
         Self {
-            main: medium(main),
-            apart: apart.map(medium),
+            mirrors: Mirrors::new(&scene.surfaces, &materials),
+            materials,
+        }
+    }
+
+    /// What walks through it move through.
+    pub(crate) fn medium<'a>(&'a self, scene: &'a Scene, emitters: &'a Emitters<'a>) -> Medium<'a> {
+        Medium {
+            surfaces: &scene.surfaces,
+            materials: &self.materials,
+            emitters,
+            mirrors: &self.mirrors,
+            panes: self.materials.iter().any(|m| m.optics.is_pane()),
         }
     }
 }

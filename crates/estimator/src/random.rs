@@ -21,9 +21,11 @@ pub(crate) enum Purpose {
     Connect = 2,
     /// The direction in which a walk leaves an emitter.
     Launch = 3,
+    /// The chain of mirrors in which a vertex looks for an emitter.
+    Reflect = 4,
 }
 
-const PURPOSES: u64 = 4;
+const PURPOSES: u64 = 8;
 const BLOCK: u64 = 4;
 
 /// Vertices of a walk, its start included, whose numbers are spread evenly.
@@ -90,6 +92,17 @@ pub(crate) struct Uniforms {
 }
 
 impl Uniforms {
+    /// Four numbers for the mirror of that `order` in the chain by which the vertex at `depth` looks for an emitter.
+    #[must_use]
+    pub(crate) fn in_chain(self, depth: u32, order: u32) -> [f64; 4] {
+        if order == 0 {
+            return self.at(depth, Purpose::Reflect);
+        }
+        let chain = u64::from(depth) << 32 | u64::from(order);
+        let key = mixed(self.key ^ mixed(chain.wrapping_mul(GOLDEN)));
+        Self { key, ..self }.at(SPREAD, Purpose::Reflect)
+    }
+
     /// Four numbers in [0, 1), multiples of 2⁻⁵³, for the vertex at `depth`.
     #[must_use]
     #[inline]

@@ -2,7 +2,7 @@
 
 use crate::pass::Channels;
 use crate::receiver::Receiver;
-use crate::results::{Group, Paired, Reading};
+use crate::results::{Group, Paired, Reading, Shares};
 use crate::statistics::{Estimate, Means, Tally, degree_of_linear_polarisation};
 use malus_scene::Scene;
 
@@ -59,9 +59,36 @@ impl<'a> Readings<'a> {
         }
     }
 
+    /// A sum a walk, of both kinds of walk together.
+    fn at(&self, means: &Means, index: usize) -> f64 {
+        means.at(index) + means.at(self.receivers.len() * self.channels.count + index)
+    }
+
+    /// What each way of finding light has brought of S0, as shares of its sum over the free sensors.
+    #[must_use]
+    pub(crate) fn shares(&self, tally: &Tally) -> Shares {
+        let mut shares = Shares::default();
+        let count = self.channels.count;
+        let half = self.receivers.len() * count;
+        for sensor in 0..self.receivers.len() {
+            if self.receivers[sensor].enclosed {
+                continue;
+            }
+            let first = sensor * count;
+            let mean = |index: usize| tally.estimate(|means| means.at(index)).mean;
+            let [mirrored, met] = [0, 1].map(|part| mean(first + self.channels.found + part));
+            shares.exact += self.exact[sensor][0];
+            shares.looked += mean(first) - mirrored - met;
+            shares.mirrored += mirrored;
+            shares.met += met;
+            shares.local += mean(half + first);
+        }
+        shares.normalised()
+    }
+
     fn s0(&self, tally: &Tally, sensor: usize) -> Estimate {
         let index = sensor * self.channels.count;
-        let mut estimate = tally.estimate(|means| means.at(index));
+        let mut estimate = tally.estimate(|means| self.at(means, index));
         estimate.mean += self.exact[sensor][0];
         estimate.standard_error = self.unmet.widened(estimate.standard_error, walks(tally));
         estimate
@@ -103,7 +130,7 @@ impl<'a> Readings<'a> {
             .collect();
         let count = free.len().max(1) as f64;
         let mean = |means: &Means, channel: usize| {
-            let at = |&sensor: &usize| means.at(sensor * self.channels.count + channel);
+            let at = |&sensor: &usize| self.at(means, sensor * self.channels.count + channel);
             free.iter().map(at).sum::<f64>() / count
         };
         let exact = free.iter().map(|&s| self.exact[s][0]).sum::<f64>() / count;
@@ -130,13 +157,15 @@ impl<'a> Readings<'a> {
         let mut stokes = self.exact[sensor];
         let mut standard_error = [0.0; 4];
         for component in 0..self.channels.components {
-            let estimate = tally.estimate(|means| means.at(first + component));
+            let estimate = tally.estimate(|means| self.at(means, first + component));
             stokes[component] += estimate.mean;
             standard_error[component] = widened(estimate.standard_error);
         }
         let dolp = if self.channels.components > 1 {
             degree_of_linear_polarisation(stokes, |[c0, c1, c2]| {
-                tally.estimate(|m| c0 * m.at(first) + c1 * m.at(first + 1) + c2 * m.at(first + 2))
+                tally.estimate(|m| {
+                    c0 * self.at(m, first) + c1 * self.at(m, first + 1) + c2 * self.at(m, first + 2)
+                })
             })
         } else {
             Estimate {
@@ -144,7 +173,7 @@ impl<'a> Readings<'a> {
                 standard_error: 0.0,
             }
         };
-        let at = |means: &Means, channel: usize| means.at(first + channel);
+        let at = |means: &Means, channel: usize| self.at(means, first + channel);
         let exact = self.exact[sensor][0];
         let paired = |channel| Paired::new(tally, exact, channel, at, widened);
         Reading {

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use malus_geometry::Surfaces;
 use malus_optics::{Basis, Sensor as SensorRole};
-use malus_scene::{Frame, Scene, Sensor, SensorPoint};
+use malus_scene::{Frame, Quantity, Scene, Sensor, SensorPoint};
+use std::f64::consts::FRAC_1_PI;
 
 /// One sensor point.
 #[derive(Debug, Clone, Copy)]
@@ -14,6 +15,8 @@ pub(crate) struct Receiver {
     pub normal: DVec3,
     /// Inside a closed solid: takes no part in anything.
     pub enclosed: bool,
+    /// What a surface of unit exitance that fills the view gives: 1 as irradiance, 1/π as radiance.
+    pub per_exitance: f64,
     frame: Frame,
     axis: DVec3,
 }
@@ -38,9 +41,33 @@ impl Receiver {
             origin: free_of_surfaces(surfaces, point.position, point.normal),
             normal: point.normal,
             enclosed: point.enclosed,
-            frame: sensor.frame,
+            per_exitance: match sensor.quantity {
+                Quantity::Irradiance => 1.0,
+                Quantity::Radiance => FRAC_1_PI,
+            },
+            frame: match sensor.quantity {
+                Quantity::Irradiance => sensor.frame,
+                Quantity::Radiance => Frame::Fixed,
+            },
             axis: sensor.axis,
         }
+    }
+
+    /// One that reads the radiance that arrives at a point against a unit vector, with the given x axis.
+    pub(crate) fn of_radiance(origin: DVec3, direction: DVec3, axis: DVec3) -> Self {
+        Self {
+            origin,
+            normal: direction,
+            enclosed: false,
+            per_exitance: FRAC_1_PI,
+            frame: Frame::Fixed,
+            axis,
+        }
+    }
+
+    /// Whether it reads irradiance, which light from all directions of a hemisphere gives.
+    pub(crate) fn is_irradiance(&self) -> bool {
+        self.per_exitance >= 1.0
     }
 
     /// Basis in which a beam along `direction` is added here (physics: the last rotator of eq. 20, or the fixed axis).

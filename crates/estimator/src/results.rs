@@ -8,7 +8,7 @@ use malus_scene::Estimator;
 pub struct Results {
     /// One entry a sensor group of the scene, in its order; inside, one reading a sensor point.
     pub groups: Vec<Group>,
-    /// Walks taken: in all for `local`, at each sensor point for `gather`.
+    /// Walks taken: in all for `local`, at each sensor point for `gather`, both for `auto`.
     /// Given as `--samples`, it repeats this run to the byte.
     pub samples: u64,
     /// Degrees of freedom of every standard error: the number of replicas less one.
@@ -17,7 +17,7 @@ pub struct Results {
     pub representation: Representation,
     /// Why that representation.
     pub representation_reason: String,
-    /// The estimator used: never [`Estimator::Auto`].
+    /// The estimator used.
     pub estimator: Estimator,
     /// Why that estimator.
     pub estimator_reason: String,
@@ -27,8 +27,40 @@ pub struct Results {
     pub stop: Stop,
     /// Largest se0 / max(S0, 10⁻³ · mean S0) over the free sensors.
     pub relative_error_max: f64,
+    /// What each way of finding light has brought of S0.
+    pub shares: Shares,
     /// Paths that the estimator cannot see, walks that were truncated.
     pub warnings: Vec<String>,
+}
+
+/// What each way of finding light has brought, as shares of S0 summed over all free sensor points.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Shares {
+    /// Straight from sources without geometry, summed exactly.
+    pub exact: f64,
+    /// Emitters that walks from the sensors looked at.
+    pub looked: f64,
+    /// Emitters that walks from the sensors looked at in mirrors.
+    pub mirrored: f64,
+    /// Emitters that walks from the sensors met by chance.
+    pub met: f64,
+    /// Walks from the emitters, joined to the sensors.
+    pub local: f64,
+}
+
+impl Shares {
+    /// The same, so that they sum to 1; all 0 where there is no light.
+    pub(crate) fn normalised(self) -> Self {
+        let sum = self.exact + self.looked + self.mirrored + self.met + self.local;
+        let share = |part: f64| if sum > 0.0 { part / sum } else { 0.0 };
+        Self {
+            exact: share(self.exact),
+            looked: share(self.looked),
+            mirrored: share(self.mirrored),
+            met: share(self.met),
+            local: share(self.local),
+        }
+    }
 }
 
 /// The readings of one sensor group.

@@ -1,17 +1,17 @@
 //! A run: replicas taken further in steps until a stopping rule holds.
 
-use crate::choose::{blind_spots, choose, erratic};
+use crate::choose::{blind_spots, erratic, techniques};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::exact;
-use crate::pass::{Channels, Passes, has_mirrors, materials_of};
+use crate::pass::{Channels, Modelled, Passes, has_mirrors};
 use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
 use crate::results::{Answer, Progress, Results, Stop};
 use crate::statistics::REPLICAS;
 use crate::trace::LONGEST;
 use malus_optics::Representation;
-use malus_scene::{Estimator, Model, Scene, Settings};
+use malus_scene::{Model, Scene, Settings};
 
 /// Walks a replica before the first checkpoint: fewer would not tell an error from luck.
 const FIRST_CHECKPOINT: u64 = 16;
@@ -54,25 +54,30 @@ fn run_with<const N: usize>(
 ) -> Results {
     let channels = Channels::new(scene, settings, representation);
     let emitters = Emitters::new(scene);
-    let main = materials_of(settings.model, &scene.materials);
-    let apart = channels.apart.map(|_| match settings.model {
-        Model::Diffuse => scene.materials.clone(),
-        Model::Polarised | Model::Scalar => materials_of(Model::Diffuse, &scene.materials),
-    });
     let receivers = Receiver::all(scene);
+    let (techniques, estimator_reason) = techniques(settings.estimator, &receivers);
+    let main = Modelled::new(scene, settings.model);
+    let apart = channels.apart.map(|_| match settings.model {
+        Model::Diffuse => Modelled::new(scene, Model::Scalar),
+        Model::Polarised | Model::Scalar => Modelled::new(scene, Model::Diffuse),
+    });
+    let passes = Passes {
+        main: main.medium(scene, &emitters),
+        apart: apart.as_ref().map(|apart| apart.medium(scene, &emitters)),
+        techniques,
+    };
     let engine = Engine::<N> {
-        passes: Passes::new(scene, &emitters, &main, apart.as_deref()),
+        passes,
         channels,
         receivers: &receivers,
         seed: settings.seed,
     };
-    let chosen = choose(&engine, settings.estimator);
-    let exact = exact::from_sources::<N>(&engine.passes.main, &receivers);
-    let mirrors = engine
-        .passes
-        .media()
-        .any(|medium| has_mirrors(medium.materials));
-    let unmet = if mirrors && chosen.estimator == Estimator::Gather {
+    let exact = exact::from_sources::<N>(&passes.main, &receivers);
+    // Light in mirrors that nothing looks into is met by chance, or not yet.
+    let unseen = passes.media().any(|medium| {
+        has_mirrors(medium.materials) && !(techniques.mirrored && medium.mirrors.is_complete())
+    });
+    let unmet = if unseen && techniques.gather {
         emitters.unmet()
     } else {
         Unmet::default()
@@ -89,9 +94,7 @@ fn run_with<const N: usize>(
     let stop = loop {
         let checkpoint = next_checkpoint(taken).min(limit.unwrap_or(u64::MAX));
         let until = checkpoint.min(taken + engine.step());
-        truncated += engine
-            .advance(chosen.estimator, &mut tally, until)
-            .truncated;
+        truncated += engine.advance(&mut tally, until).truncated;
         taken = until;
         if taken == checkpoint {
             reached = Some(readings.relative_error(&tally));
@@ -129,9 +132,9 @@ fn run_with<const N: usize>(
     let mut warnings: Vec<String> = engine
         .passes
         .media()
-        .flat_map(|medium| blind_spots(medium, chosen.estimator))
+        .flat_map(|medium| blind_spots(medium, settings.estimator))
         .collect();
-    warnings.extend(erratic(&engine, chosen.estimator));
+    warnings.extend(erratic(&engine, settings.estimator));
     warnings.extend(exact::singular(&engine.passes.main, &receivers));
     if truncated > 0 {
         warnings.push(format!(
@@ -144,8 +147,9 @@ fn run_with<const N: usize>(
         dof: REPLICAS - 1,
         representation,
         representation_reason: representation_reason(scene, settings),
-        estimator: chosen.estimator,
-        estimator_reason: chosen.reason,
+        estimator: settings.estimator,
+        estimator_reason: estimator_reason.into(),
+        shares: readings.shares(&tally),
         complete: stop != Stop::Interrupted,
         stop,
         relative_error_max,

@@ -5,13 +5,16 @@
 //! components and the scalar model beside the polarised one, and no weight can grow along a chain.
 
 use crate::direction::cosine_weighted;
-use crate::emitters::{Choice, Emitters, Incoming};
+use crate::emitters::{Choice, Start, State};
+use crate::launched::{Launched, Rival};
+use crate::lookout::Lookout;
+use crate::medium::{Medium, Meeting, Step, target};
+use crate::mirrors::Viewer;
 use crate::random::{Purpose, Uniforms};
 use glam::DVec3;
-use malus_geometry::Surfaces;
+use malus_geometry::Hit;
 use malus_optics::Reflection;
-use malus_scene::Material;
-use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Longest walk, in vertices. What is left of it then is dropped and counted.
 pub(crate) const LONGEST: u32 = 1_000_000;
@@ -19,15 +22,15 @@ pub(crate) const LONGEST: u32 = 1_000_000;
 /// Vertices that a path holds at once; a longer walk is handed over in pieces.
 const PIECE: usize = 1024;
 
-/// What a walk moves through.
-#[derive(Clone, Copy)]
-pub(crate) struct Medium<'a> {
-    /// Where surfaces are.
-    pub surfaces: &'a Surfaces,
-    /// What they do to light, by surface index.
-    pub materials: &'a [Material],
-    /// Where light comes from.
-    pub emitters: &'a Emitters<'a>,
+/// Which techniques are weighed against each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Techniques {
+    /// Vertices look for emitters in flat mirrors too.
+    pub mirrored: bool,
+    /// Walks from emitters, each joined to every sensor, for one walk from each sensor; 0: none.
+    pub local: f64,
+    /// Walks are taken from the sensors.
+    pub gather: bool,
 }
 
 /// How a walk goes on at a vertex.
@@ -37,22 +40,32 @@ pub(crate) enum Event {
     Absorbed,
     /// Mirror-like reflection.
     Mirror,
+    /// Straight through a pane.
+    Through,
     /// Into a random direction, by Lambert's law.
     Diffuse,
 }
 
-/// A light seen from a point of a walk, past everything between.
-#[derive(Debug, Clone, Copy)]
+/// A light seen from a point of a walk.
+#[derive(Debug, Clone)]
 pub(crate) struct Connection<'a> {
-    /// What arrives.
-    pub incoming: Incoming<'a>,
-    /// Irradiance of the receiving surface, weighted against finding the light by chance, in unit/m².
+    /// State of the light.
+    pub state: State<'a>,
+    /// Unit vector from the point towards it, or towards the first mirror.
+    pub toward: DVec3,
+    /// Direction in which the light leaves.
+    pub leaving: DVec3,
+    /// Irradiance of the receiving surface, weighted against other techniques; mirrors and panes are still to be applied.
     pub irradiance: f64,
+    /// Mirrors and panes on the way, among the path's steps.
+    pub steps: Range<usize>,
+    /// Whether there is a mirror among them.
+    pub mirrored: bool,
 }
 
 /// A point where a walk met a surface.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Vertex<'a> {
+#[derive(Debug, Clone)]
+pub(crate) struct Vertex {
     /// Index of the material met.
     pub material: u32,
     /// Where, moved off the surface towards the side that the walk came from.
@@ -61,61 +74,81 @@ pub(crate) struct Vertex<'a> {
     pub normal: DVec3,
     /// Direction of the walk on arrival.
     pub arriving: DVec3,
-    /// Mirror-like reflection under this angle; its scale holds a.
-    pub mirror: Reflection,
+    /// Direction in which it goes on.
+    pub onward: DVec3,
+    /// Mirror-like reflection, or what a pane lets through where the walk goes on like that.
+    pub matrix: Reflection,
     /// Share of the light that the surface emits towards the walk for which this walk answers: 0 if it emits none.
     pub emission: f64,
-    /// What this point sees of the emitters, if it was asked.
-    pub connection: Option<Connection<'a>>,
+    /// What this point sees of the emitters, if it was asked: a range of the path's connections.
+    pub connections: Range<usize>,
     /// How the walk goes on.
     pub event: Event,
     /// Probability of that event.
     pub probability: f64,
     /// True where the back of a one-sided surface was met: it neither reflects nor emits.
     pub black: bool,
+    /// For a walk from an emitter: the techniques that compete with joining this point to a sensor.
+    pub rival: Rival,
 }
 
-/// Successive vertices of a walk.
-pub(crate) type Path<'a> = Vec<Vertex<'a>>;
+/// Successive vertices of a walk, with what they see.
+#[derive(Debug, Default)]
+pub(crate) struct Path<'a> {
+    /// The vertices.
+    pub vertices: Vec<Vertex>,
+    /// What they see of the emitters.
+    pub connections: Vec<Connection<'a>>,
+    /// Mirrors and panes on the ways to them.
+    pub steps: Vec<Step>,
+}
+
+impl Path<'_> {
+    /// Forgets everything.
+    pub(crate) fn clear(&mut self) {
+        self.vertices.clear();
+        self.connections.clear();
+        self.steps.clear();
+    }
+}
 
 /// A walk under way.
 pub(crate) struct Walk<'a> {
     medium: Medium<'a>,
+    techniques: Techniques,
     uniforms: Uniforms,
     origin: DVec3,
     direction: DVec3,
     depth: u32,
-    search: Search,
+    role: Role<'a>,
     /// True if the walk ended at [`LONGEST`].
     pub truncated: bool,
 }
 
-/// Whether a walk looks for light, and how it might have found the next surface's emission otherwise.
-#[derive(Debug, Clone, Copy)]
-enum Search {
-    /// It carries light itself.
-    Never,
-    /// Density per solid angle of its direction, and the table that the last vertex looked into.
-    Sampled { density: f64, choice: Choice },
-    /// It came off a mirror: no other technique sees what it meets.
-    Mirrored,
+/// What a walk is for.
+enum Role<'a> {
+    /// It carries light from an emitter.
+    Launched(Launched<'a>),
+    /// It looks for light, from a sensor.
+    Looking(Lookout),
 }
 
 impl<'a> Walk<'a> {
     /// A walk that carries light away from an emitter.
     pub(crate) fn from_emitter(
         medium: Medium<'a>,
+        techniques: Techniques,
         uniforms: Uniforms,
-        origin: DVec3,
-        direction: DVec3,
+        start: &Start<'a>,
     ) -> Self {
         Self {
             medium,
+            techniques,
             uniforms,
-            origin,
-            direction,
+            origin: start.origin,
+            direction: start.direction,
             depth: 0,
-            search: Search::Never,
+            role: Role::Launched(Launched::new(start)),
             truncated: false,
         }
     }
@@ -123,170 +156,308 @@ impl<'a> Walk<'a> {
     /// A walk from a sensor, against the light, with density cos θ/π.
     pub(crate) fn from_sensor(
         medium: Medium<'a>,
+        techniques: Techniques,
         uniforms: Uniforms,
         origin: DVec3,
         normal: DVec3,
     ) -> Self {
         let [_, u, v, _] = uniforms.at(0, Purpose::Scatter);
         let direction = cosine_weighted(normal, [u, v]);
+        let viewer = Viewer {
+            point: origin,
+            normal,
+            sensor: true,
+        };
+        // Light straight from sources without geometry is summed exactly, but in mirrors it is looked for.
+        let choice = if techniques.mirrored && !medium.mirrors.is_empty() {
+            Choice::All
+        } else {
+            Choice::Areas
+        };
         Self {
             medium,
+            techniques,
             uniforms,
             origin,
             direction,
             depth: 0,
-            search: Search::Sampled {
-                density: normal.dot(direction) / PI,
-                choice: Choice::Areas,
-            },
+            role: Role::Looking(Lookout::of_sensor(viewer, direction, choice)),
             truncated: false,
         }
     }
 
-    /// What the sensor that the walk starts from sees of the emitting surfaces.
-    pub(crate) fn first_connection(&self, normal: DVec3) -> Option<Connection<'a>> {
-        self.connection(self.origin, normal, 1.0, Choice::Areas)
+    /// A walk from a point against the light that arrives from one direction.
+    pub(crate) fn along_sight(
+        medium: Medium<'a>,
+        techniques: Techniques,
+        uniforms: Uniforms,
+        origin: DVec3,
+        direction: DVec3,
+    ) -> Self {
+        Self {
+            medium,
+            techniques,
+            uniforms,
+            origin,
+            direction,
+            depth: 0,
+            role: Role::Looking(Lookout::along(origin, direction)),
+            truncated: false,
+        }
+    }
+
+    /// Appends what the sensor that the walk starts from sees of the emitters.
+    pub(crate) fn look(&self, path: &mut Path<'a>) {
+        if let Role::Looking(lookout) = &self.role
+            && !lookout.alone
+        {
+            self.connect(path, lookout.viewer, lookout.choice, 1.0, &|_| 0.0);
+        }
     }
 
     /// Appends the next vertices to `path`; false once the walk has ended.
     pub(crate) fn advance(&mut self, path: &mut Path<'a>) -> bool {
-        while path.len() < PIECE {
-            let Some(vertex) = self.next_vertex() else {
+        while path.vertices.len() < PIECE {
+            let Some(vertex) = self.next_vertex(path) else {
                 return false;
             };
-            path.push(vertex);
-            if vertex.event == Event::Absorbed {
+            let ended = vertex.event == Event::Absorbed;
+            path.vertices.push(vertex);
+            if ended {
                 return false;
             }
         }
         true
     }
 
-    fn next_vertex(&mut self) -> Option<Vertex<'a>> {
-        let Medium {
-            surfaces,
-            materials,
-            ..
-        } = self.medium;
+    fn next_vertex(&mut self, path: &mut Path<'a>) -> Option<Vertex> {
         if self.depth == LONGEST {
             self.truncated = true;
             return None;
         }
         self.depth += 1;
-        let hit = surfaces.nearest(self.origin, self.direction)?;
-        let outward = surfaces.normal(hit.triangle);
-        let front = self.direction.dot(outward) < 0.0;
-        let normal = if front { outward } else { -outward };
-        let index = surfaces.surface(hit.triangle);
-        let material = &materials[index as usize];
-        let position = hit.position + normal * surfaces.offset();
-        let cos = -self.direction.dot(normal);
-        let sin2 = self.direction.cross(normal).length_squared();
-
+        let (hit, meeting) = self.medium.meet(self.origin, self.direction)?;
+        let normal = meeting.normal;
+        let off = normal * self.medium.surfaces.offset();
         let mut vertex = Vertex {
-            material: index,
-            position,
+            material: meeting.index,
+            position: hit.position + off,
             normal,
             arriving: self.direction,
-            mirror: Reflection::NONE,
-            emission: if front {
-                self.emission_share(material, hit.distance, cos)
-            } else {
-                0.0
-            },
-            connection: None,
+            onward: self.direction,
+            matrix: Reflection::NONE,
+            emission: self.emission_share(&hit, &meeting),
+            connections: 0..0,
             event: Event::Absorbed,
             probability: 1.0,
-            black: !front && !material.two_sided,
+            black: meeting.black(),
+            rival: Rival::default(),
         };
         if vertex.black {
             return Some(vertex);
         }
-        vertex.mirror = material.optics.mirror(cos, sin2);
-        let (diffuse, mirror) = lobes(material.optics.albedo(), vertex.mirror.bound());
-        if diffuse > 0.0 && !matches!(self.search, Search::Never) {
-            vertex.connection = self.connection(position, normal, diffuse, Choice::All);
+        let (mirror, through) = meeting.matrices();
+        let odds = meeting.odds(&mirror, &through);
+        match &mut self.role {
+            Role::Launched(launched) => launched.go(hit.distance),
+            Role::Looking(lookout) => lookout.go(hit.distance),
+        }
+        if meeting.material.optics.scattering() > 0.0 {
+            self.join(path, &mut vertex, &meeting, odds.diffuse);
         }
         let [lobe, u, v, _] = self.uniforms.at(self.depth, Purpose::Scatter);
-        self.origin = position;
-        if lobe < diffuse {
+        self.origin = vertex.position;
+        if lobe < odds.diffuse {
             vertex.event = Event::Diffuse;
-            vertex.probability = diffuse;
+            vertex.probability = odds.diffuse;
             self.direction = cosine_weighted(normal, [u, v]);
-            if !matches!(self.search, Search::Never) {
-                self.search = Search::Sampled {
-                    density: diffuse * normal.dot(self.direction) / PI,
-                    choice: Choice::All,
-                };
+            let out = bound(&meeting, self.direction);
+            let viewer = Viewer {
+                point: vertex.position,
+                normal,
+                sensor: false,
+            };
+            let local = self.techniques.local;
+            match &mut self.role {
+                Role::Launched(launched) => launched.scatter(vertex.rival, odds.diffuse, out),
+                Role::Looking(lookout) => {
+                    lookout.scatter(
+                        viewer,
+                        meeting.angle.0,
+                        self.direction,
+                        odds.diffuse,
+                        out,
+                        local,
+                    );
+                }
             }
-        } else if lobe < diffuse + mirror {
+        } else if lobe < odds.diffuse + odds.mirror {
             vertex.event = Event::Mirror;
-            vertex.probability = mirror;
-            self.direction = (self.direction + normal * (2.0 * cos)).normalize();
-            if !matches!(self.search, Search::Never) {
-                self.search = Search::Mirrored;
+            vertex.probability = odds.mirror;
+            vertex.matrix = mirror;
+            self.direction = (self.direction + normal * (2.0 * meeting.angle.0)).normalize();
+            match &mut self.role {
+                Role::Launched(launched) => launched.chain.reflect(meeting.facet, odds.mirror),
+                Role::Looking(lookout) => lookout.chain.reflect(meeting.facet, odds.mirror),
+            }
+        } else if lobe < odds.diffuse + odds.mirror + odds.through {
+            vertex.event = Event::Through;
+            vertex.probability = odds.through;
+            vertex.matrix = through;
+            self.origin = hit.position - off;
+            match &mut self.role {
+                Role::Launched(launched) => launched.chain.odds *= odds.through,
+                Role::Looking(lookout) => lookout.chain.odds *= odds.through,
             }
         }
+        vertex.onward = self.direction;
         Some(vertex)
     }
 
-    /// Weight of meeting an emitter by chance against looking at it (balance heuristic; Veach & Guibas 1995).
-    fn emission_share(&self, material: &Material, distance: f64, cos: f64) -> f64 {
-        let Some(emission) = &material.emission else {
-            return 0.0;
+    /// What a scattering vertex sees, or what competes with joining it to a sensor.
+    fn join(&self, path: &mut Path<'a>, vertex: &mut Vertex, meeting: &Meeting, diffuse: f64) {
+        let viewer = Viewer {
+            point: vertex.position,
+            normal: vertex.normal,
+            sensor: false,
         };
-        match self.search {
-            Search::Never => 0.0,
-            Search::Mirrored => 1.0,
-            Search::Sampled { density, choice } => {
-                let looked = self
-                    .medium
-                    .emitters
-                    .density(choice, emission.exitance, distance, cos);
-                density / (density + looked)
+        match &self.role {
+            Role::Launched(launched) if self.techniques.gather => {
+                let cos = meeting.angle.0;
+                vertex.rival = launched.rival(&self.medium, self.techniques, viewer, cos);
+            }
+            Role::Launched(_) => {}
+            Role::Looking(lookout) => {
+                let first = path.connections.len();
+                let cos = meeting.angle.0;
+                let local = self.techniques.local;
+                let coupling = |toward: DVec3| lookout.coupling(cos, bound(meeting, toward), local);
+                self.connect(path, viewer, Choice::All, diffuse, &coupling);
+                vertex.connections = first..path.connections.len();
             }
         }
     }
 
-    /// What the point sees of one emitter, weighted against meeting it by chance in a direction that is drawn with
-    /// the probability `diffuse` and the density cos θ/π.
-    fn connection(
-        &self,
-        point: DVec3,
-        normal: DVec3,
-        diffuse: f64,
-        choice: Choice,
-    ) -> Option<Connection<'a>> {
-        let uniforms = self.uniforms.at(self.depth, Purpose::Connect);
-        let incoming = self.medium.emitters.look(choice, point, uniforms)?;
-        let cos = incoming.toward.dot(normal);
-        if cos <= 0.0 || !unobstructed(self.medium.surfaces, point, &incoming) {
-            return None;
+    /// Weight of meeting an emitter by chance against the other techniques (balance heuristic; Veach & Guibas 1995).
+    fn emission_share(&self, hit: &Hit, meeting: &Meeting) -> f64 {
+        let (Some(emission), true) = (&meeting.material.emission, meeting.front) else {
+            return 0.0;
+        };
+        match &self.role {
+            Role::Launched(_) => 0.0,
+            Role::Looking(lookout) => lookout.emission_share(
+                &self.medium,
+                self.techniques,
+                hit,
+                meeting.angle.0,
+                emission.exitance,
+            ),
         }
-        let weight = incoming
-            .density
-            .map_or(1.0, |looked| looked / (looked + diffuse * cos / PI));
-        Some(Connection {
-            incoming,
-            irradiance: incoming.irradiance * cos * weight,
-        })
+    }
+
+    /// Appends what a point sees of one emitter, straight and in mirrors, weighted against other techniques.
+    ///
+    /// `diffuse` is the probability with which the walk goes on from there into a random direction, and `coupling` what
+    /// [`Lookout::coupling`] says of it.
+    fn connect(
+        &self,
+        path: &mut Path<'a>,
+        viewer: Viewer,
+        choice: Choice,
+        diffuse: f64,
+        coupling: &dyn Fn(DVec3) -> f64,
+    ) {
+        let Medium {
+            emitters, mirrors, ..
+        } = self.medium;
+        let uniforms = self.uniforms.at(self.depth, Purpose::Connect);
+        let Some(site) = emitters.look(choice, uniforms) else {
+            return;
+        };
+        let area_density = site.area_density();
+        // Light received, weighted, for a chain of this probability that was drawn with 1/inverse.
+        let weighted =
+            |toward: DVec3, leaving, square, odds: f64, probability: f64, inverse: f64| {
+                let cos = toward.dot(viewer.normal);
+                let by_chance = site.launched(leaving, square) * cos * odds;
+                let density = area_density.unwrap_or(1.0);
+                let looked = probability * density;
+                let met = if area_density.is_some() {
+                    diffuse * by_chance
+                } else {
+                    0.0
+                };
+                let local = coupling(toward) * by_chance * density;
+                site.irradiance(leaving, square) * cos * inverse * looked / (looked + met + local)
+            };
+        let first = path.steps.len();
+        let span = site
+            .from
+            .map_or(-site.direction(), |from| from - viewer.point);
+        let square = span.length_squared();
+        let toward = span / square.sqrt();
+        let direct = !viewer.sensor || area_density.is_some();
+        // A point at the source itself has no direction to it.
+        if direct
+            && toward.dot(viewer.normal) > 0.0
+            && site.irradiance(-toward, square) > 0.0
+            && square > 0.0
+            && let Some(passage) =
+                self.medium
+                    .passage(viewer.point, site.from, toward, &mut path.steps)
+        {
+            path.connections.push(Connection {
+                state: site.state,
+                toward,
+                leaving: -toward,
+                irradiance: weighted(toward, -toward, square, passage.odds, 1.0, 1.0),
+                steps: first..path.steps.len(),
+                mirrored: false,
+            });
+        } else {
+            path.steps.truncate(first);
+        }
+        if !self.techniques.mirrored || mirrors.is_empty() {
+            return;
+        }
+        let strength = |leaving, square| site.irradiance(leaving, square);
+        let target = target(&site, &strength);
+        mirrors.draw(&viewer, &target, self.uniforms, self.depth, |chain| {
+            let first = path.steps.len();
+            let found = self
+                .medium
+                .chained(&viewer, &target, &chain.facets, &mut path.steps);
+            let Some((toward, square, passage)) = found else {
+                path.steps.truncate(first);
+                return;
+            };
+            let leaving = -passage.arriving;
+            path.connections.push(Connection {
+                state: site.state,
+                toward,
+                leaving,
+                irradiance: weighted(
+                    toward,
+                    leaving,
+                    square,
+                    passage.odds,
+                    chain.probability,
+                    chain.inverse,
+                ),
+                steps: first..path.steps.len(),
+                mirrored: true,
+            });
+        });
     }
 }
 
-/// True if nothing lies between the point and the emitter.
-pub(crate) fn unobstructed(surfaces: &Surfaces, point: DVec3, incoming: &Incoming) -> bool {
-    match incoming.from {
-        Some(from) => surfaces.visible(point, from),
-        None => surfaces.escapes(point, incoming.toward),
-    }
-}
-
-/// Probabilities of the diffuse and the mirror-like lobe, from their bounds; scaled down where they sum above 1.
-fn lobes(diffuse: f64, mirror: f64) -> (f64, f64) {
-    let sum = diffuse + mirror;
-    if sum > 1.0 {
-        (diffuse / sum, mirror / sum)
+/// Probability with which a walk that came from `direction` would be scattered where this one was met.
+fn bound(meeting: &Meeting, direction: DVec3) -> f64 {
+    let optics = &meeting.material.optics;
+    if optics.polarises_scattering() {
+        let (cos, sin2) = malus_optics::angle_of_incidence(direction, meeting.normal);
+        optics.diffuse_bound(cos, sin2)
     } else {
-        (diffuse, mirror)
+        optics.diffuse_bound(meeting.angle.0, meeting.angle.1)
     }
 }

@@ -46,19 +46,39 @@ impl Material {
         self.mirror(cos_incidence, sin2_incidence).bound().min(1.0)
     }
 
-    /// What the scattered part takes of light that arrives: ((1 − a)ρ, 0, 0, 0) for the mixture.
-    ///
-    /// The factor 1/π of the kernel is the estimator's.
+    /// Placeholder.
     #[must_use]
-    #[inline]
-    pub fn entering<const N: usize>(&self, _cos_incidence: f64) -> Analyser<N, Incidence> {
-        Analyser::unpolarised(self.albedo())
+    pub fn through(&self, _c: f64, _s: f64) -> Reflection {
+        Reflection::NONE
     }
-
-    /// The state in which the scattered part leaves: (1, 0, 0, 0) for the mixture.
+    /// Placeholder.
     #[must_use]
-    #[inline]
-    pub const fn leaving<const N: usize>(&self, _cos_emergence: f64) -> Stokes<N, Emergence> {
+    pub fn is_pane(&self) -> bool {
+        false
+    }
+    /// Placeholder.
+    #[must_use]
+    pub fn scattering(&self) -> f64 {
+        self.albedo()
+    }
+    /// Placeholder.
+    #[must_use]
+    pub fn polarises_scattering(&self) -> bool {
+        false
+    }
+    /// Placeholder.
+    #[must_use]
+    pub fn diffuse_bound(&self, _c: f64, _s: f64) -> f64 {
+        self.albedo()
+    }
+    /// Placeholder.
+    #[must_use]
+    pub fn entering<const N: usize>(&self, _c: f64, _s: f64) -> Analyser<N, Incidence> {
+        Analyser::unpolarised(1.0)
+    }
+    /// Placeholder.
+    #[must_use]
+    pub fn leaving<const N: usize>(&self, _c: f64, _s: f64) -> Stokes<N, Emergence> {
         Stokes::unpolarised(1.0)
     }
 
@@ -129,7 +149,8 @@ mod tests {
             assert_eq!((scaled + 0.0).to_bits(), (0.6 * plain + 0.0).to_bits());
         }
         let arriving = Stokes::<4, Incidence>::new([2.0, 1.0, -1.0, 0.5]);
-        let scattered = material.leaving::<4>(0.3) * (material.entering(0.6) * arriving);
+        let scattered =
+            material.leaving::<4>(0.3, 0.1) * (material.entering(0.6, 0.1) * arriving * 0.2);
         assert_eq!(
             scattered,
             Mueller::<4, Incidence, Emergence>::depolariser(0.4 * 0.5) * arriving

@@ -1,0 +1,214 @@
+//! The directions in which a point sees a chain of flat mirrors.
+
+use glam::DVec3;
+use malus_geometry::Facet;
+use std::f64::consts::TAU;
+
+/// A cone of directions from a receiving point, or from its image behind mirrors.
+///
+/// Mirrors are unfolded: behind each one the apex moves to its image, and so does everything that belongs to it.
+#[derive(Debug, Clone)]
+pub(crate) struct Beam {
+    /// The point or its image, in m.
+    pub apex: DVec3,
+    /// Normal of the receiving surface, mirrored likewise.
+    pub normal: DVec3,
+    /// Edges of the cone, as directions of any length; none: the whole hemisphere about the normal.
+    edges: Vec<DVec3>,
+    /// +1 where the edges run anticlockwise as seen against the beam, −1 otherwise.
+    turn: f64,
+}
+
+impl Beam {
+    /// All that a surface with this unit normal sees from a point.
+    pub(crate) fn hemisphere(apex: DVec3, normal: DVec3) -> Self {
+        Self {
+            apex,
+            normal,
+            edges: Vec::new(),
+            turn: 1.0,
+        }
+    }
+
+    /// The part of the beam that goes through the hull of a facet, past the mirror `window` that it comes from; `None`
+    /// where nothing is left.
+    pub(crate) fn through(&self, facet: &Facet, window: Option<&Facet>) -> Option<Self> {
+        // The hull runs anticlockwise about the facet's normal, so as seen from the side of the normal.
+        let above = self.apex.dot(facet.normal) > facet.height;
+        let turn = if above { 1.0 } else { -1.0 };
+        let mut edges: Vec<DVec3> = facet.hull.iter().map(|&c| c - self.apex).collect();
+        if let Some(window) = window {
+            // What lies past the window lies across its plane from the apex.
+            let depth = self.apex.dot(window.normal) - window.height;
+            clip(&mut edges, window.normal * -depth.signum(), depth.abs());
+        }
+        clip(&mut edges, self.normal, 0.0);
+        let mut last = self.edges.last().copied();
+        for &edge in &self.edges {
+            if let Some(last) = last.replace(edge) {
+                // Unit length keeps products of distant hulls within range.
+                clip(&mut edges, (last.cross(edge) * -self.turn).normalize(), 0.0);
+            }
+        }
+        drop_doubles(&mut edges);
+        (edges.len() > 2).then(|| Self {
+            edges,
+            turn,
+            ..*self
+        })
+    }
+
+    /// The beam behind a mirror.
+    pub(crate) fn mirrored(mut self, facet: &Facet) -> Self {
+        self.apex = facet.image(self.apex);
+        self.normal = facet.mirrored(self.normal);
+        for edge in &mut self.edges {
+            *edge = facet.mirrored(*edge);
+        }
+        self.turn = -self.turn;
+        self
+    }
+
+    /// Whether a direction, of any length, lies in the beam.
+    pub(crate) fn contains(&self, direction: DVec3) -> bool {
+        if direction.dot(self.normal) <= 0.0 {
+            return false;
+        }
+        let Some(&(mut last)) = self.edges.last() else {
+            return true;
+        };
+        for &edge in &self.edges {
+            if last.cross(edge).dot(direction) * self.turn > 0.0 {
+                return false;
+            }
+            last = edge;
+        }
+        true
+    }
+
+    /// Probability that a direction with density cos θ/π about the normal lies in the beam: Lambert's sum over the
+    /// edges of a polygon, (1/2π) Σ γ **N**·(**e** × **e**′)/|**e** × **e**′| with γ the angle between neighbours.
+    pub(crate) fn share(&self) -> f64 {
+        let Some(&(mut last)) = self.edges.last() else {
+            return 1.0;
+        };
+        let mut sum = 0.0;
+        for &edge in &self.edges {
+            let across = last.cross(edge);
+            let sine = across.length();
+            if sine > 0.0 {
+                let angle = libm::atan2(sine, last.dot(edge));
+                sum += angle * across.dot(self.normal) / sine;
+            }
+            last = edge;
+        }
+        (sum.abs() / TAU).min(1.0)
+    }
+}
+
+/// Sine² of the angle below which two edges are one: the plane between them would be noise.
+const DOUBLE: f64 = 1e-22;
+
+/// Leaves one of neighbouring edges in one direction.
+fn drop_doubles(edges: &mut Vec<DVec3>) {
+    let Some(&(mut last)) = edges.last() else {
+        return;
+    };
+    edges.retain(|&edge| {
+        let across = last.cross(edge).length_squared();
+        let apart = across > DOUBLE * last.length_squared() * edge.length_squared();
+        if apart {
+            last = edge;
+        }
+        apart
+    });
+}
+
+/// Leaves of a polygon, given from the apex, what lies at least at that height along a normal.
+fn clip(edges: &mut Vec<DVec3>, normal: DVec3, height: f64) {
+    if edges.iter().all(|edge| edge.dot(normal) >= height) {
+        return;
+    }
+    let Some(&(mut last)) = edges.last() else {
+        return;
+    };
+    let mut kept = Vec::with_capacity(edges.len() + 1);
+    for &edge in edges.iter() {
+        let (before, after) = (last.dot(normal) - height, edge.dot(normal) - height);
+        if (before < 0.0) != (after < 0.0) {
+            kept.push((last * after - edge * before) / (after - before));
+        }
+        if after >= 0.0 {
+            kept.push(edge);
+        }
+        last = edge;
+    }
+    *edges = kept;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use malus_geometry::{Facets, Mesh, Surfaces, shape};
+    use std::f64::consts::PI;
+
+    /// The facets of the unit cube seen from inside: their normals, found by area and then by index.
+    fn walls() -> Vec<Facet> {
+        let mut mesh = Mesh::default();
+        let (positions, triangles) = shape::cuboid(DVec3::ZERO, DVec3::ONE, true);
+        mesh.append(&positions, &triangles, 0, 0);
+        let surfaces = Surfaces::new(mesh).unwrap();
+        Facets::new(&surfaces, |_| true, 0.0, 64).list().to_vec()
+    }
+
+    fn wall(normal: DVec3) -> Facet {
+        let mut walls = walls().into_iter();
+        walls.find(|f| f.normal.distance(normal) < 1e-12).unwrap()
+    }
+
+    #[test]
+    fn the_walls_of_a_room_fill_the_view() {
+        let beam = Beam::hemisphere(DVec3::new(0.2, 0.3, 0.1), DVec3::new(0.6, 0.0, 0.8));
+        let shares = walls().into_iter().filter_map(|f| beam.through(&f, None));
+        let sum: f64 = shares.map(|b| b.share()).sum();
+        assert!((sum - 1.0).abs() < 1e-14, "{sum}");
+    }
+
+    #[test]
+    fn the_ceiling_has_its_form_factor() {
+        // A unit square seen from below its centre at distance 1, parallel: four times the corner formula
+        // (1/2π)[X/√(1+X²) atan(Y/√(1+X²)) + …] with X = Y = ½.
+        let x: f64 = 0.5;
+        let root = (1.0 + x * x).sqrt();
+        let exact = 4.0 / (2.0 * PI) * 2.0 * (x / root) * (x / root).atan();
+        let beam = Beam::hemisphere(DVec3::new(0.5, 0.5, 0.0), DVec3::Z);
+        let share = beam.through(&wall(DVec3::NEG_Z), None).unwrap().share();
+        assert!((share - exact).abs() < 1e-14, "{share} {exact}");
+    }
+
+    #[test]
+    fn chains_of_two_mirrors_fill_what_one_sees() {
+        // Whatever leaves through a wall is mirrored there and meets one of the five others next.
+        let beam = Beam::hemisphere(DVec3::new(0.7, 0.4, 0.2), DVec3::Z);
+        let first = wall(DVec3::NEG_X);
+        let seen = beam.through(&first, None).unwrap();
+        let behind = seen.clone().mirrored(&first);
+        let others = walls().into_iter().filter(|f| f.normal != first.normal);
+        let sum: f64 = others
+            .filter_map(|f| behind.through(&f, Some(&first)))
+            .map(|b| b.share())
+            .sum();
+        assert!((sum - seen.share()).abs() < 1e-14);
+        // And a direction lies in just one of them.
+        let mut inside = 0;
+        for facet in walls().into_iter().filter(|f| f.normal != first.normal) {
+            let direction = DVec3::new(-0.9, 0.21, 0.37);
+            inside += i32::from(
+                behind
+                    .through(&facet, Some(&first))
+                    .is_some_and(|b| b.contains(direction)),
+            );
+        }
+        assert_eq!(inside, 1);
+    }
+}

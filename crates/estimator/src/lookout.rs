@@ -1,0 +1,183 @@
+//! What a walk from a sensor knows of the other ways in which the light it meets might have been found.
+
+use crate::emitters::Choice;
+use crate::medium::Medium;
+use crate::mirrors::Viewer;
+use crate::trace::Techniques;
+use glam::DVec3;
+use malus_geometry::Hit;
+use std::f64::consts::PI;
+
+/// Mirrors and panes since a point, as a walk has passed them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Passed {
+    /// The mirrors, where all of them can be looked into; `None` once one cannot.
+    facets: Option<Vec<u32>>,
+    /// Probability of the events on the way.
+    pub odds: f64,
+    /// Length of the way, in m.
+    length: f64,
+}
+
+impl Passed {
+    /// Nothing passed yet.
+    pub(crate) fn nothing() -> Self {
+        Self {
+            facets: Some(Vec::new()),
+            odds: 1.0,
+            length: 0.0,
+        }
+    }
+
+    /// Passes a mirror.
+    pub(crate) fn reflect(&mut self, facet: Option<u32>, odds: f64) {
+        self.odds *= odds;
+        match (&mut self.facets, facet) {
+            (Some(facets), Some(facet)) => facets.push(facet),
+            (facets, _) => *facets = None,
+        }
+    }
+
+    /// Goes on by a distance in m.
+    pub(crate) fn go(&mut self, distance: f64) {
+        self.length += distance;
+    }
+
+    /// Whether no mirror has been passed.
+    pub(crate) fn is_straight(&self) -> bool {
+        self.facets.as_ref().is_some_and(Vec::is_empty)
+    }
+
+    /// The mirrors passed, if all can be looked into.
+    pub(crate) fn facets(&self) -> Option<&[u32]> {
+        self.facets.as_deref()
+    }
+
+    /// Square of the length of the way, in m².
+    pub(crate) fn square(&self) -> f64 {
+        self.length * self.length
+    }
+}
+
+/// The last point of a walk that could have looked for light, and the way since.
+#[derive(Debug, Clone)]
+pub(crate) struct Lookout {
+    /// The point.
+    pub viewer: Viewer,
+    /// Where it looked.
+    pub choice: Choice,
+    /// True where it could not: a sensor of radiance.
+    pub alone: bool,
+    /// Mirrors and panes passed since.
+    pub chain: Passed,
+    /// Probability with which the walk went on from there into a random direction.
+    diffuse: f64,
+    /// Cosine of that direction to the normal.
+    cos: f64,
+    /// See [`Lookout::coupling`].
+    local: f64,
+    /// Whether it is the sensor.
+    sensor: bool,
+}
+
+impl Lookout {
+    /// A sensor of irradiance.
+    pub(crate) fn of_sensor(viewer: Viewer, direction: DVec3, choice: Choice) -> Self {
+        Self {
+            viewer,
+            choice,
+            alone: false,
+            chain: Passed::nothing(),
+            diffuse: 1.0,
+            cos: viewer.normal.dot(direction),
+            local: 0.0,
+            sensor: true,
+        }
+    }
+
+    /// A sensor of radiance: nothing but the walk itself can find what arrives from its direction.
+    pub(crate) fn along(origin: DVec3, direction: DVec3) -> Self {
+        let viewer = Viewer {
+            point: origin,
+            normal: direction,
+            sensor: true,
+        };
+        Self {
+            alone: true,
+            ..Self::of_sensor(viewer, direction, Choice::Areas)
+        }
+    }
+
+    /// Goes on by a distance in m.
+    pub(crate) fn go(&mut self, distance: f64) {
+        self.chain.go(distance);
+    }
+
+    /// How often walks from emitters come by a point that this walk has reached and are joined to the sensor there, for
+    /// one walk from the sensor that looks at an emitter from it: multiplied by the density with which such a walk
+    /// arrives, it competes with the probability of looking.
+    ///
+    /// The walk arrives under the cosine `cos`; a walk that came the other way would be scattered with the probability
+    /// `diffuse`; `walks` are taken from emitters for one from each sensor.
+    pub(crate) fn coupling(&self, cos: f64, diffuse: f64, walks: f64) -> f64 {
+        if !self.sensor {
+            self.local * diffuse
+        } else if self.alone || !self.chain.is_straight() || walks <= 0.0 {
+            0.0
+        } else {
+            walks * PI * self.chain.square() / (self.cos * cos * self.chain.odds)
+        }
+    }
+
+    /// Passes a diffuse event, which has the probability `diffuse` this way and `reverse` the other way.
+    pub(crate) fn scatter(
+        &mut self,
+        viewer: Viewer,
+        arriving_cos: f64,
+        direction: DVec3,
+        diffuse: f64,
+        reverse: f64,
+        walks: f64,
+    ) {
+        // Between the last point and this one, both ways pass the same distances: only the ends differ.
+        self.local = self.coupling(arriving_cos, reverse, walks) / diffuse;
+        self.sensor = false;
+        self.alone = false;
+        self.viewer = viewer;
+        self.choice = Choice::All;
+        self.chain = Passed::nothing();
+        self.diffuse = diffuse;
+        self.cos = viewer.normal.dot(direction);
+    }
+
+    /// Weight of the light that a surface of this exitance sends to the walk, met under the cosine `cos`.
+    pub(crate) fn emission_share(
+        &self,
+        medium: &Medium,
+        techniques: Techniques,
+        hit: &Hit,
+        cos: f64,
+        exitance: f64,
+    ) -> f64 {
+        if self.alone {
+            return 1.0;
+        }
+        let probability = match self.chain.facets() {
+            Some([]) => 1.0,
+            Some(facets) if techniques.mirrored => {
+                let total = medium.emitters.flux(self.choice);
+                let site = medium.emitters.site_on(hit.triangle, hit.position, total);
+                medium.chain_probability(&self.viewer, &site, facets)
+            }
+            _ => 0.0,
+        };
+        let distance = self.chain.length + hit.distance;
+        // All as densities per solid angle at the last point.
+        let density = medium.emitters.density(self.choice, exitance);
+        let looked = probability * density * distance * distance / cos;
+        let by_chance = self.cos / PI * self.chain.odds;
+        let met = self.diffuse * by_chance;
+        let local = self.local * self.diffuse * density * by_chance;
+        met / (met + looked + local)
+    }
+}

@@ -1,0 +1,243 @@
+//! What light moves through: surfaces, what they do, and where light comes from.
+
+use crate::emitters::{Emitters, Site};
+use crate::mirrors::{Mirrors, Target, Viewer};
+use glam::DVec3;
+use malus_geometry::{Hit, Surfaces};
+use malus_optics::{Reflection, angle_of_incidence};
+use malus_scene::Material;
+
+/// What a walk moves through.
+#[derive(Clone, Copy)]
+pub(crate) struct Medium<'a> {
+    /// Where surfaces are.
+    pub surfaces: &'a Surfaces,
+    /// What they do to light, by surface index.
+    pub materials: &'a [Material],
+    /// Where light comes from.
+    pub emitters: &'a Emitters<'a>,
+    /// Flat mirrors that can be looked into.
+    pub mirrors: &'a Mirrors,
+    /// Whether anything lets light through.
+    pub panes: bool,
+}
+
+/// A mirror or a pane on the way of light, met along a direction of tracing.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Step {
+    /// Unit normal on the side that tracing came from.
+    pub normal: DVec3,
+    /// Direction of tracing on arrival.
+    pub arriving: DVec3,
+    /// What it does to the light, in the basis with the s axis as x.
+    pub matrix: Reflection,
+    /// Whether the light goes on straight.
+    pub through: bool,
+}
+
+/// How a surface is met.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Meeting<'a> {
+    /// Index of the material.
+    pub index: u32,
+    /// The material.
+    pub material: &'a Material,
+    /// Whether on the side that emits.
+    pub front: bool,
+    /// Unit normal on the side met.
+    pub normal: DVec3,
+    /// Cosine and sine² of the angle of incidence.
+    pub angle: (f64, f64),
+    /// The mirror that the triangle is part of, if it is one that can be looked into.
+    pub facet: Option<u32>,
+}
+
+/// Probabilities with which a walk goes on, by bounds that hold for any state of light.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Odds {
+    /// Into a random direction.
+    pub diffuse: f64,
+    /// Mirror-like.
+    pub mirror: f64,
+    /// Straight on.
+    pub through: f64,
+}
+
+/// Mirrors and panes between two points, and the probability with which a walk would pass them.
+pub(crate) struct Passage {
+    /// Direction in which tracing arrives.
+    pub arriving: DVec3,
+    /// Product of the probabilities of all events on the way.
+    pub odds: f64,
+}
+
+impl Meeting<'_> {
+    /// True where the back of a one-sided surface is met: it neither reflects nor emits.
+    pub(crate) fn black(&self) -> bool {
+        !self.front && !self.material.two_sided
+    }
+
+    /// The mirror-like part and what is let through.
+    pub(crate) fn matrices(&self) -> (Reflection, Reflection) {
+        let (cos, sin2) = self.angle;
+        let optics = &self.material.optics;
+        let through = if optics.is_pane() {
+            optics.through(cos, sin2)
+        } else {
+            Reflection::NONE
+        };
+        (optics.mirror(cos, sin2), through)
+    }
+
+    /// How a walk that meets the surface like this goes on.
+    pub(crate) fn odds(&self, mirror: &Reflection, through: &Reflection) -> Odds {
+        let (cos, sin2) = self.angle;
+        let mirror = mirror.bound().min(1.0);
+        // What is caught between two panes comes back to both at one angle for ever, so there the mirror's share is
+        // kept; a stack of panes is passed once.
+        Odds {
+            diffuse: self.material.optics.diffuse_bound(cos, sin2),
+            mirror,
+            through: through.bound().min(1.0 - mirror),
+        }
+    }
+}
+
+impl<'a> Medium<'a> {
+    /// The first surface along a ray.
+    pub(crate) fn meet(&self, from: DVec3, direction: DVec3) -> Option<(Hit, Meeting<'a>)> {
+        let hit = self.surfaces.nearest(from, direction)?;
+        let outward = self.surfaces.normal(hit.triangle);
+        let front = direction.dot(outward) < 0.0;
+        let normal = if front { outward } else { -outward };
+        let index = self.surfaces.surface(hit.triangle);
+        let meeting = Meeting {
+            index,
+            material: &self.materials[index as usize],
+            front,
+            normal,
+            angle: angle_of_incidence(direction, normal),
+            facet: self.mirrors.of(hit.triangle),
+        };
+        Some((hit, meeting))
+    }
+
+    /// Θ along a segment, or up to infinity where `to` is `None`: `None` where something is in the way, and otherwise the
+    /// panes that are passed, appended to `steps`.
+    pub(crate) fn passage(
+        &self,
+        from: DVec3,
+        to: Option<DVec3>,
+        toward: DVec3,
+        steps: &mut Vec<Step>,
+    ) -> Option<Passage> {
+        let clear = Passage {
+            arriving: toward,
+            odds: 1.0,
+        };
+        if !self.panes {
+            let seen = match to {
+                Some(to) => self.surfaces.visible(from, to),
+                None => self.surfaces.escapes(from, toward),
+            };
+            return seen.then_some(clear);
+        }
+        let mut passage = clear;
+        let mut from = from;
+        loop {
+            let left = to.map_or(f64::INFINITY, |to| to.distance(from));
+            let Some((hit, meeting)) = self.meet(from, toward) else {
+                return Some(passage);
+            };
+            if hit.distance >= left {
+                return Some(passage);
+            }
+            let (mirror, matrix) = meeting.matrices();
+            let odds = meeting.odds(&mirror, &matrix).through;
+            if odds <= 0.0 {
+                return None;
+            }
+            passage.odds *= odds;
+            steps.push(Step {
+                normal: meeting.normal,
+                arriving: toward,
+                matrix,
+                through: true,
+            });
+            from = hit.position - meeting.normal * self.surfaces.offset();
+        }
+    }
+
+    /// The way from a viewer to a target by a chain of mirrors: `None` where a mirror is missed or something stands in
+    /// the way. Also gives the direction at the start and the square of the length of the whole way.
+    pub(crate) fn chained(
+        &self,
+        viewer: &Viewer,
+        target: &Target,
+        chain: &[u32],
+        steps: &mut Vec<Step>,
+    ) -> Option<(DVec3, f64, Passage)> {
+        let image = self.mirrors.image(chain, target);
+        let span = if target.finite {
+            image - viewer.point
+        } else {
+            image
+        };
+        let square = span.length_squared();
+        let start = span / square.sqrt();
+        let mut odds = 1.0;
+        let (mut from, mut toward) = (viewer.point, start);
+        for &facet in chain {
+            loop {
+                let (hit, meeting) = self.meet(from, toward)?;
+                let (mirror, through) = meeting.matrices();
+                let own = meeting.facet == Some(facet);
+                let chances = meeting.odds(&mirror, &through);
+                let (matrix, chance) = if own {
+                    (mirror, chances.mirror)
+                } else {
+                    (through, chances.through)
+                };
+                if chance <= 0.0 || meeting.black() {
+                    return None;
+                }
+                odds *= chance;
+                steps.push(Step {
+                    normal: meeting.normal,
+                    arriving: toward,
+                    matrix,
+                    through: !own,
+                });
+                let side = if own { 1.0 } else { -1.0 };
+                from = hit.position + meeting.normal * (side * self.surfaces.offset());
+                if own {
+                    toward = (toward + meeting.normal * (2.0 * meeting.angle.0)).normalize();
+                    break;
+                }
+            }
+        }
+        let to = target.finite.then_some(target.at);
+        let passage = self.passage(from, to, toward, steps)?;
+        let passage = Passage {
+            odds: odds * passage.odds,
+            ..passage
+        };
+        Some((start, square, passage))
+    }
+
+    /// The probability of a chain of mirrors to a site as seen by a viewer.
+    pub(crate) fn chain_probability(&self, viewer: &Viewer, site: &Site, chain: &[u32]) -> f64 {
+        let strength = |leaving, square| site.irradiance(leaving, square);
+        let target = target(site, &strength);
+        self.mirrors.probability(viewer, &target, chain)
+    }
+}
+
+/// A site as what a chain of mirrors leads to.
+pub(crate) fn target<'t>(site: &Site, strength: &'t dyn Fn(DVec3, f64) -> f64) -> Target<'t> {
+    Target {
+        at: site.from.unwrap_or(-site.direction()),
+        finite: site.from.is_some(),
+        strength,
+    }
+}

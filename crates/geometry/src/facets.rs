@@ -1,0 +1,331 @@
+//! Flat patches: neighbouring triangles of one plane, taken as one.
+
+use crate::Surfaces;
+use crate::shape::across;
+use crate::weld::weld;
+use glam::{DVec2, DVec3};
+
+/// Cosine between the normals of a patch and of a triangle below which the triangle is no part of it: what is nearly
+/// flat to within the tolerance may still be a needle that stands across.
+const PARALLEL: f64 = 0.999;
+
+/// Corners of the longest hull that is kept; a rounder one is replaced by its rectangle.
+const CORNERS: usize = 8;
+
+/// A flat patch of a mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Facet {
+    /// Unit normal of its plane, that of its largest triangle.
+    pub normal: DVec3,
+    /// Distance of the plane from the origin along the normal, in m.
+    pub height: f64,
+    /// Corners of a convex polygon in the plane that holds the patch, in order, in m.
+    pub hull: Vec<DVec3>,
+    /// Area of the triangles of the patch, in m².
+    pub area: f64,
+    /// Its largest triangle.
+    pub triangle: u32,
+}
+
+/// The largest flat patches among some of the triangles of a mesh.
+#[derive(Debug, Clone, Default)]
+pub struct Facets {
+    list: Vec<Facet>,
+    /// One more than the patch that each triangle belongs to, 0 for none; empty where there is no patch.
+    of: Vec<u16>,
+}
+
+impl Facet {
+    /// The point mirrored in the plane.
+    #[must_use]
+    #[inline]
+    pub fn image(&self, point: DVec3) -> DVec3 {
+        point - self.normal * (2.0 * (point.dot(self.normal) - self.height))
+    }
+
+    /// The direction mirrored in the plane.
+    #[must_use]
+    #[inline]
+    pub fn mirrored(&self, direction: DVec3) -> DVec3 {
+        direction - self.normal * (2.0 * direction.dot(self.normal))
+    }
+
+    /// The share of the way along `span` from `origin` at which the plane is crossed, where that lies in the hull.
+    #[must_use]
+    #[inline]
+    pub fn crossing(&self, origin: DVec3, span: DVec3) -> Option<f64> {
+        let share = (self.height - origin.dot(self.normal)) / span.dot(self.normal);
+        if !(share > 0.0 && share.is_finite()) {
+            return None;
+        }
+        let point = origin + span * share;
+        let mut last = self.hull[self.hull.len() - 1];
+        for &corner in &self.hull {
+            if (corner - last).cross(point - last).dot(self.normal) < 0.0 {
+                return None;
+            }
+            last = corner;
+        }
+        Some(share)
+    }
+}
+
+impl Facets {
+    /// The patches of the triangles that are `wanted`: the `most` largest ones, none smaller than `least` (in m²).
+    #[must_use]
+    pub fn new(surfaces: &Surfaces, wanted: impl Fn(u32) -> bool, least: f64, most: usize) -> Self {
+        let mut triangles: Vec<u32> = (0..surfaces.len() as u32).filter(|&t| wanted(t)).collect();
+        if triangles.is_empty() {
+            return Self::default();
+        }
+        let neighbours = Neighbours::new(surfaces, &triangles);
+        let area = |triangle: u32| surfaces.triangle(triangle).area();
+        triangles.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
+        let mut free = vec![false; surfaces.len()];
+        for &triangle in &triangles {
+            free[triangle as usize] = true;
+        }
+        let mut patches: Vec<(f64, Vec<u32>)> = Vec::new();
+        for &seed in &triangles {
+            if free[seed as usize] {
+                let patch = grow(surfaces, &neighbours, seed, &mut free);
+                let area: f64 = patch.iter().map(|&t| area(t)).sum();
+                if area >= least {
+                    patches.push((area, patch));
+                }
+            }
+        }
+        patches.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1[0].cmp(&b.1[0])));
+        patches.truncate(most.min(usize::from(u16::MAX) - 1));
+        let mut of = vec![
+            0;
+            if patches.is_empty() {
+                0
+            } else {
+                surfaces.len()
+            }
+        ];
+        let mut list = Vec::with_capacity(patches.len());
+        for (number, (area, patch)) in (1..).zip(&patches) {
+            for &triangle in patch {
+                of[triangle as usize] = number;
+            }
+            let normal = surfaces.normal(patch[0]);
+            list.push(Facet {
+                normal,
+                height: surfaces.triangle(patch[0]).vertices[0].dot(normal),
+                hull: hull(surfaces, patch, normal),
+                area: *area,
+                triangle: patch[0],
+            });
+        }
+        Self { list, of }
+    }
+
+    /// The patches, the largest first.
+    #[must_use]
+    pub fn list(&self) -> &[Facet] {
+        &self.list
+    }
+
+    /// The patch that a triangle belongs to.
+    #[must_use]
+    #[inline]
+    pub fn of(&self, triangle: u32) -> Option<u32> {
+        let number = *self.of.get(triangle as usize)?;
+        u32::from(number).checked_sub(1)
+    }
+}
+
+/// Which triangles share an edge.
+struct Neighbours {
+    /// Ends of an edge, the lesser first, and a triangle that has it; sorted.
+    edges: Vec<(u32, u32, u32)>,
+    welded: Vec<u32>,
+}
+
+impl Neighbours {
+    fn new(surfaces: &Surfaces, triangles: &[u32]) -> Self {
+        let welded = weld(surfaces.mesh(), surfaces.tolerance());
+        let mut found = Self {
+            edges: Vec::with_capacity(3 * triangles.len()),
+            welded,
+        };
+        for &triangle in triangles {
+            for (one, other) in found.edges_of(surfaces, triangle) {
+                found.edges.push((one, other, triangle));
+            }
+        }
+        found.edges.sort_unstable();
+        found
+    }
+
+    fn edges_of(&self, surfaces: &Surfaces, triangle: u32) -> [(u32, u32); 3] {
+        let corners = surfaces.mesh().triangles[triangle as usize].map(|v| self.welded[v as usize]);
+        [(0, 1), (1, 2), (2, 0)].map(|(i, j)| {
+            let (a, b) = (corners[i], corners[j]);
+            (a.min(b), a.max(b))
+        })
+    }
+
+    fn at<'a>(&'a self, surfaces: &Surfaces, triangle: u32) -> impl Iterator<Item = u32> + 'a {
+        self.edges_of(surfaces, triangle)
+            .into_iter()
+            .flat_map(|(one, other)| {
+                let start = self.edges.partition_point(|e| (e.0, e.1) < (one, other));
+                self.edges[start..]
+                    .iter()
+                    .take_while(move |e| (e.0, e.1) == (one, other))
+                    .map(|e| e.2)
+            })
+    }
+}
+
+/// The free triangles about the `seed` that lie in its plane, itself first; they are free no longer.
+fn grow(surfaces: &Surfaces, neighbours: &Neighbours, seed: u32, free: &mut [bool]) -> Vec<u32> {
+    let normal = surfaces.normal(seed);
+    let height = surfaces.triangle(seed).vertices[0].dot(normal);
+    let tolerance = surfaces.tolerance();
+    let mut patch = vec![seed];
+    free[seed as usize] = false;
+    let mut next = 0;
+    while let Some(&triangle) = patch.get(next) {
+        next += 1;
+        for other in neighbours.at(surfaces, triangle) {
+            let vertices = surfaces.triangle(other).vertices;
+            if free[other as usize]
+                && surfaces.normal(other).dot(normal).abs() > PARALLEL
+                && vertices
+                    .iter()
+                    .all(|v| (v.dot(normal) - height).abs() <= tolerance)
+            {
+                free[other as usize] = false;
+                patch.push(other);
+            }
+        }
+    }
+    patch
+}
+
+/// A convex polygon in the plane across `normal` that holds the triangles, anticlockwise about the normal.
+fn hull(surfaces: &Surfaces, patch: &[u32], normal: DVec3) -> Vec<DVec3> {
+    let origin = surfaces.triangle(patch[0]).vertices[0];
+    let (x, y) = across(normal);
+    let corners = patch.iter().flat_map(|&t| surfaces.triangle(t).vertices);
+    let flat = corners.map(|v| DVec2::new((v - origin).dot(x), (v - origin).dot(y)));
+    let mut corners = convex(flat.collect());
+    if corners.len() > CORNERS {
+        corners = rectangle(&corners);
+    }
+    let lifted = corners.iter().map(|p| origin + x * p.x + y * p.y);
+    lifted.collect()
+}
+
+/// The convex hull of points, anticlockwise (Andrew's monotone chain).
+fn convex(mut points: Vec<DVec2>) -> Vec<DVec2> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    let half = |points: &mut dyn Iterator<Item = DVec2>| {
+        let mut chain: Vec<DVec2> = Vec::new();
+        for point in points {
+            while let [.., before, last] = chain[..] {
+                if (last - before).perp_dot(point - last) > 0.0 {
+                    break;
+                }
+                chain.pop();
+            }
+            chain.push(point);
+        }
+        chain.pop();
+        chain
+    };
+    let mut lower = half(&mut points.iter().copied());
+    lower.extend(half(&mut points.iter().rev().copied()));
+    lower
+}
+
+/// The smallest rectangle about a convex polygon that has a side along one of its edges.
+fn rectangle(corners: &[DVec2]) -> Vec<DVec2> {
+    let count = corners.len();
+    let about = |index: usize| {
+        let along = (corners[(index + 1) % count] - corners[index]).normalize();
+        let extent = |axis: DVec2| {
+            let heights = corners.iter().map(|p| p.dot(axis));
+            heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| {
+                (low.min(h), high.max(h))
+            })
+        };
+        (along, extent(along), extent(along.perp()))
+    };
+    let area = |&(_, x, y): &(DVec2, (f64, f64), (f64, f64))| (x.1 - x.0) * (y.1 - y.0);
+    let best = (0..count)
+        .map(about)
+        .min_by(|a, b| area(a).total_cmp(&area(b)));
+    let Some((along, (left, right), (bottom, top))) = best else {
+        return corners.to_vec();
+    };
+    [(left, bottom), (right, bottom), (right, top), (left, top)]
+        .map(|(x, y)| along * x + along.perp() * y)
+        .to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Mesh, shape};
+
+    fn surfaces(parts: &[(Vec<DVec3>, Vec<[u32; 3]>)]) -> Surfaces {
+        let mut mesh = Mesh::default();
+        for (object, (positions, triangles)) in (0..).zip(parts) {
+            mesh.append(positions, triangles, 0, object);
+        }
+        Surfaces::new(mesh).unwrap()
+    }
+
+    #[test]
+    fn a_box_has_six_patches_of_two_triangles() {
+        let room = surfaces(&[shape::cuboid(DVec3::ZERO, DVec3::new(3.0, 2.0, 1.0), true)]);
+        let facets = Facets::new(&room, |_| true, 0.0, 64);
+        let areas: Vec<f64> = facets.list().iter().map(|f| f.area).collect();
+        assert_eq!(areas, [6.0, 6.0, 3.0, 3.0, 2.0, 2.0]);
+        for facet in facets.list() {
+            assert_eq!(facet.hull.len(), 4);
+            assert_eq!(
+                facets
+                    .of(facet.triangle)
+                    .map(|f| &facets.list()[f as usize]),
+                Some(facet)
+            );
+        }
+        assert!((0..12).all(|t| facets.of(t).is_some()));
+    }
+
+    #[test]
+    fn patches_stay_small_in_number_and_large_in_size() {
+        let room = surfaces(&[shape::cuboid(DVec3::ZERO, DVec3::new(3.0, 2.0, 1.0), true)]);
+        assert_eq!(Facets::new(&room, |_| true, 2.5, 64).list().len(), 4);
+        let two = Facets::new(&room, |_| true, 0.0, 2);
+        assert_eq!(two.list().len(), 2);
+        assert_eq!((0..12).filter(|&t| two.of(t).is_some()).count(), 4);
+        let none = Facets::new(&room, |_| false, 0.0, 64);
+        assert!(none.list().is_empty() && none.of(3).is_none());
+    }
+
+    #[test]
+    fn a_round_patch_lies_in_the_square_about_it() {
+        let disc = surfaces(&[shape::disc(DVec3::Z, DVec3::Z, 1.0, 128)]);
+        let facets = Facets::new(&disc, |_| true, 0.0, 64);
+        let [facet] = facets.list() else {
+            panic!("one patch");
+        };
+        assert_eq!(facet.hull.len(), 4);
+        let hit = facet.crossing(DVec3::new(0.9, 0.0, 3.0), DVec3::NEG_Z * 4.0);
+        assert!(hit.is_some_and(|share| (share - 0.5).abs() < 1e-12));
+        assert_eq!(facet.crossing(DVec3::new(0.9, 0.0, 3.0), DVec3::Z), None);
+        assert_eq!(
+            facet.crossing(DVec3::new(1.7, 0.0, 3.0), DVec3::NEG_Z),
+            None
+        );
+        assert_eq!(facet.image(DVec3::new(0.1, 0.2, 3.0)).z.round(), -1.0);
+    }
+}
