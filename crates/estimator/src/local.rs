@@ -126,7 +126,7 @@ struct Joining<'r> {
 }
 
 /// A way on which a point is joined to a sensor.
-struct Way {
+struct Joined {
     /// Direction at the point.
     direction: DVec3,
     /// cos θ cos θ′/(π r²), in 1/m².
@@ -190,7 +190,7 @@ impl Joining<'_> {
         };
         let even = diffuse(vertex.normal);
         let mut steps: Vec<Step> = Vec::new();
-        let read = |receiver: &Receiver, way: &Way, steps: &[Step]| {
+        let read = |receiver: &Receiver, way: &Joined, steps: &[Step]| {
             if steps.is_empty() && !polarises {
                 let mut light = [0.0; N];
                 light[0] = 1.0;
@@ -236,7 +236,7 @@ impl Joining<'_> {
         vertex: &Vertex,
         depth: u32,
         receiver: &Receiver,
-        mut found: impl FnMut(&Way, &[Step]),
+        mut found: impl FnMut(&Joined, &[Step]),
     ) {
         if !receiver.is_irradiance() {
             return;
@@ -254,20 +254,17 @@ impl Joining<'_> {
         };
         medium
             .mirrors
-            .draw(&viewer, &target, self.uniforms, depth, |chain| {
+            .draw(&viewer, &target, self.uniforms, depth, |drawn, inverse| {
                 let mut steps = Vec::new();
-                let Some((direction, square, passage)) =
-                    medium.chained(&viewer, &target, &chain.facets, &mut steps)
-                else {
-                    return;
-                };
-                let cosines = direction.dot(vertex.normal) * -passage.arriving.dot(receiver.normal);
-                let way = Way {
-                    direction,
-                    coupling: cosines.max(0.0) / (PI * square) * chain.inverse,
-                    odds: passage.odds,
-                };
-                found(&way, &steps);
+                if let Some((way, _)) = medium.drawn(&viewer, &target, &drawn, &mut steps) {
+                    let cosines = way.start.dot(vertex.normal) * -way.arriving.dot(receiver.normal);
+                    let joined = Joined {
+                        direction: way.start,
+                        coupling: cosines.max(0.0) / (PI * way.square) * inverse,
+                        odds: way.odds,
+                    };
+                    found(&joined, &steps);
+                }
             });
     }
 }
@@ -280,7 +277,7 @@ fn straight(
     normal: DVec3,
     receiver: &Receiver,
     steps: &mut Vec<Step>,
-) -> Option<Way> {
+) -> Option<Joined> {
     if receiver.enclosed || !receiver.is_irradiance() {
         return None;
     }
@@ -293,7 +290,7 @@ fn straight(
     let square = segment.length_squared();
     let direction = segment / square.sqrt();
     let passage = medium.passage(from, Some(receiver.origin), direction, steps)?;
-    Some(Way {
+    Some(Joined {
         direction,
         coupling: leaving * arriving / (PI * square * square),
         odds: passage.odds,

@@ -1,7 +1,7 @@
 //! What light moves through: surfaces, what they do, and where light comes from.
 
 use crate::emitters::{Emitters, Site};
-use crate::mirrors::{Mirrors, Target, Viewer};
+use crate::mirrors::{Drawn, Mirrors, Target, Viewer};
 use glam::DVec3;
 use malus_geometry::{Hit, Surfaces};
 use malus_optics::{Reflection, angle_of_incidence};
@@ -63,11 +63,21 @@ pub(crate) struct Odds {
     pub through: f64,
 }
 
-/// Mirrors and panes between two points, and the probability with which a walk would pass them.
+/// Panes between two points, and the probability with which a walk would pass them.
 pub(crate) struct Passage {
-    /// Direction in which tracing arrives.
-    pub arriving: DVec3,
     /// Product of the probabilities of all events on the way.
+    pub odds: f64,
+}
+
+/// A way by mirrors and panes.
+pub(crate) struct Way {
+    /// Direction of tracing at its start.
+    pub start: DVec3,
+    /// Direction of tracing at its end.
+    pub arriving: DVec3,
+    /// Square of its length, in m².
+    pub square: f64,
+    /// Probability with which a walk would pass all its mirrors and panes.
     pub odds: f64,
 }
 
@@ -131,10 +141,7 @@ impl<'a> Medium<'a> {
         toward: DVec3,
         steps: &mut Vec<Step>,
     ) -> Option<Passage> {
-        let clear = Passage {
-            arriving: toward,
-            odds: 1.0,
-        };
+        let clear = Passage { odds: 1.0 };
         if !self.panes {
             let seen = match to {
                 Some(to) => self.surfaces.visible(from, to),
@@ -169,14 +176,14 @@ impl<'a> Medium<'a> {
     }
 
     /// The way from a viewer to a target by a chain of mirrors: `None` where a mirror is missed or something stands in
-    /// the way. Also gives the direction at the start and the square of the length of the whole way.
-    pub(crate) fn chained(
+    /// the way.
+    fn chained(
         &self,
         viewer: &Viewer,
         target: &Target,
         chain: &[u32],
         steps: &mut Vec<Step>,
-    ) -> Option<(DVec3, f64, Passage)> {
+    ) -> Option<Way> {
         let image = self.mirrors.image(chain, target);
         let span = if target.finite {
             image - viewer.point
@@ -218,25 +225,118 @@ impl<'a> Medium<'a> {
         }
         let to = target.finite.then_some(target.at);
         let passage = self.passage(from, to, toward, steps)?;
-        let passage = Passage {
+        Some(Way {
+            start,
+            square,
+            arriving: toward,
             odds: odds * passage.odds,
-            ..passage
+        })
+    }
+
+    /// The way from a viewer to an image of the target behind so many mirrors, by whichever it leads.
+    ///
+    /// Like [`chained`](Self::chained); the mirrors met are given too.
+    fn imaged(
+        &self,
+        viewer: &Viewer,
+        target: &Target,
+        (image, mirrors): (DVec3, usize),
+        steps: &mut Vec<Step>,
+    ) -> Option<(Way, Vec<u32>)> {
+        let span = image - viewer.point;
+        if span.dot(viewer.normal) <= 0.0 {
+            return None;
+        }
+        let mut left = span.length();
+        let start = span / left;
+        let mut chain = Vec::new();
+        let mut odds = 1.0;
+        let (mut from, mut toward) = (viewer.point, start);
+        while let Some((hit, meeting)) = self.meet(from, toward) {
+            if hit.distance >= left {
+                break;
+            }
+            left -= hit.distance;
+            let (mirror, through) = meeting.matrices();
+            let chances = meeting.odds(&mirror, &through);
+            let pane = meeting.material.optics.is_pane();
+            let (matrix, chance) = if pane {
+                (through, chances.through)
+            } else {
+                chain.push(meeting.facet?);
+                (mirror, chances.mirror)
+            };
+            if chance <= 0.0 || meeting.black() || chain.len() > mirrors {
+                return None;
+            }
+            odds *= chance;
+            steps.push(Step {
+                normal: meeting.normal,
+                arriving: toward,
+                matrix,
+                through: pane,
+            });
+            let side = if pane { -1.0 } else { 1.0 };
+            from = hit.position + meeting.normal * (side * self.surfaces.offset());
+            if !pane {
+                toward = (toward + meeting.normal * (2.0 * meeting.angle.0)).normalize();
+            }
+        }
+        let there =
+            chain.len() == mirrors && self.mirrors.same(self.mirrors.image(&chain, target), image);
+        let way = Way {
+            start,
+            square: span.length_squared(),
+            arriving: toward,
+            odds,
         };
-        Some((start, square, passage))
+        there.then_some((way, chain))
+    }
+
+    /// The way from a viewer to a target as it was drawn, and the probability of its mirrors; `None` where there is none.
+    pub(crate) fn drawn(
+        &self,
+        viewer: &Viewer,
+        target: &Target,
+        drawn: &Drawn,
+        steps: &mut Vec<Step>,
+    ) -> Option<(Way, f64)> {
+        match drawn {
+            Drawn::Chain(chain) => {
+                let way = self.chained(viewer, target, chain, steps)?;
+                Some((way, self.mirrors.probability(viewer, target, chain)))
+            }
+            Drawn::Image(image, mirrors) => {
+                let (way, chain) = self.imaged(viewer, target, (*image, *mirrors), steps)?;
+                Some((way, self.mirrors.probability(viewer, target, &chain)))
+            }
+        }
     }
 
     /// The probability of a chain of mirrors to a site as seen by a viewer.
     pub(crate) fn chain_probability(&self, viewer: &Viewer, site: &Site, chain: &[u32]) -> f64 {
         let strength = |leaving, square| site.irradiance(leaving, square);
-        let target = target(site, &strength);
+        let target = target(site, self.surfaces.radius(), &strength);
         self.mirrors.probability(viewer, &target, chain)
     }
 }
 
+/// How far a point source is moved aside before it is looked for in mirrors, in terms of the scene's radius. In the middle
+/// of a room it would be seen from points of a regular grid just by edges, where neither wall is sure to be met.
+const ASIDE: DVec3 = DVec3::new(0.71e-9, 0.53e-9, 0.43e-9);
+
 /// A site as what a chain of mirrors leads to.
-pub(crate) fn target<'t>(site: &Site, strength: &'t dyn Fn(DVec3, f64) -> f64) -> Target<'t> {
+pub(crate) fn target<'t>(
+    site: &Site,
+    radius: f64,
+    strength: &'t dyn Fn(DVec3, f64) -> f64,
+) -> Target<'t> {
+    let aside = match site.area_density() {
+        Some(_) => DVec3::ZERO,
+        None => ASIDE * radius,
+    };
     Target {
-        at: site.from.unwrap_or(-site.direction()),
+        at: site.from.map_or(-site.direction(), |from| from + aside),
         finite: site.from.is_some(),
         strength,
     }

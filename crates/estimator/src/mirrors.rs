@@ -8,9 +8,9 @@
 
 use crate::beam::Beam;
 use crate::pass::is_mirrorlike;
-use crate::random::Uniforms;
+use crate::random::{Fresh, Uniforms};
 use glam::DVec3;
-use malus_geometry::{Facets, Surfaces};
+use malus_geometry::{Facet, Facets, Surfaces};
 use malus_scene::Material;
 use std::f64::consts::PI;
 
@@ -26,6 +26,24 @@ const NARROWEST: f64 = 1e-10;
 /// Mirrors of a chain up to which every chain drawn is tested; of longer ones as many as keeps the rays per chain drawn
 /// constant.
 const TESTED: f64 = 3.0;
+
+/// Longest chain that is drawn by its beam.
+const LONGEST_BEAM: usize = 3;
+
+/// Radius of the cone of directions about an image, as a share of the scene's.
+const SPREAD: f64 = 0.5;
+
+/// Part of such a cone that leads to the image, or so: it only weighs techniques against each other.
+const TRIED: f64 = 0.4;
+
+/// Mirrors after which a ray is not followed any further.
+const LONGEST_CHAIN: u32 = 10_000;
+
+/// Tries after which an image is given up.
+const MOST_TRIES: u32 = 1 << 16;
+
+/// Distance within which two images are one, as a share of the scene's radius.
+const APART: f64 = 1e-6;
 
 /// Probability with which a ray is followed behind a mirror, relative to what it reflects at that angle.
 const ONWARD: f64 = 2.0;
@@ -48,6 +66,10 @@ pub(crate) struct Mirrors {
     look: f64,
     /// Whether all that is mirror-like belongs to some facet.
     complete: bool,
+    /// Radius of the cone of directions about an image, where it stands, in m.
+    spread: f64,
+    /// Distance within which two images are one, in m.
+    apart: f64,
 }
 
 /// What a chain of mirrors is to lead to.
@@ -72,14 +94,12 @@ pub(crate) struct Viewer {
     pub sensor: bool,
 }
 
-/// A chain of mirrors that was drawn.
-pub(crate) struct Chain {
-    /// Facets in the order in which the viewer sees them.
-    pub facets: Vec<u32>,
-    /// Probability of the chain, as [`Mirrors::probability`] has it.
-    pub probability: f64,
-    /// One over that with which it was drawn here: the two differ where the ray that drew it could have gone elsewhere.
-    pub inverse: f64,
+/// What was drawn: where to look for the target.
+pub(crate) enum Drawn {
+    /// In a chain of mirrors, in the order in which the viewer sees them.
+    Chain(Vec<u32>),
+    /// At the place of an image behind so many mirrors, whichever they are: from a point the way there is unique.
+    Image(DVec3, usize),
 }
 
 impl Mirrors {
@@ -102,7 +122,22 @@ impl Mirrors {
             look: (LOOK * best).clamp(LEAST_LOOK, 1.0),
             facets,
             optics,
+            spread: SPREAD * radius,
+            apart: APART * radius,
         }
+    }
+
+    /// A mirror.
+    pub(crate) fn facet(&self, facet: u32) -> &Facet {
+        &self.facets.list()[facet as usize]
+    }
+
+    /// Greatest reflectance of a mirror for light along a ray of any length.
+    pub(crate) fn bound(&self, facet: u32, ray: DVec3) -> f64 {
+        let cos = (ray.dot(self.facet(facet).normal).abs() / ray.length()).min(1.0);
+        self.optics[facet as usize]
+            .mirror(cos, 1.0 - cos * cos)
+            .bound()
     }
 
     /// The mirror that a triangle is part of.
@@ -122,16 +157,20 @@ impl Mirrors {
         self.complete
     }
 
-    /// Draws chains of mirrors that may lead the viewer to the target; `found` is given each.
+    /// Draws ways by mirrors that may lead the viewer to the target; `found` is given each, with one over the probability
+    /// of the draw.
     ///
-    /// Every chain has a chance; the mean of what it brings, times its `inverse`, is the sum over all.
+    /// Every way has a chance; the mean of what it brings, times that inverse, is the sum over all. A short chain is drawn
+    /// as such, by its beam. Of longer ones many orders of the same mirrors make the same image, each for a sliver of
+    /// directions, so there the image is drawn: its probability is that of a cone of directions about it to lead to it by
+    /// any order, and one over that is estimated without bias by how many tries that takes.
     pub(crate) fn draw(
         &self,
         viewer: &Viewer,
         target: &Target,
         uniforms: Uniforms,
         depth: u32,
-        mut found: impl FnMut(Chain),
+        mut found: impl FnMut(Drawn, f64),
     ) {
         let [_, look, s, t] = uniforms.in_chain(depth, 0);
         let look_odds = self.look_odds(viewer);
@@ -139,40 +178,114 @@ impl Mirrors {
             return;
         }
         let direction = crate::direction::cosine_weighted(viewer.normal, [s, t]);
-        let mut view = View::new(viewer);
-        let mut ray = direction;
-        // Probability that a ray which goes through the chain so far is followed through it.
+        let mut ray = Ray::new(viewer, direction);
+        let mut view = Some(View::new(viewer));
+        // Probabilities that the ray is followed so far, and that it took the choices that it did.
         let mut followed = look_odds;
-        for order in 0.. {
+        let mut choices = 1.0;
+        for order in 0..LONGEST_CHAIN {
             let [last, ..] = uniforms.in_chain(depth, order);
             let [test, onward, select, _] = uniforms.in_chain(depth, order | 1 << 31);
-            let tested = tested(order + 1);
-            if test < tested
-                && let Some((facet, share)) = self.last(&view, target, last)
+            let length = order + 1;
+            let odds = tested(length);
+            let beam = target.beam(length as usize);
+            if let (true, true, Some(view)) = (beam, test < odds, &view)
+                && let Some((facet, share)) = self.last(view, target, last)
             {
                 let mut facets = view.facets.clone();
                 facets.push(facet);
-                let drawn = view.share * tested * share;
-                let onward = self.onward_along(viewer, target, &facets);
-                found(Chain {
-                    facets,
-                    probability: look_odds * onward * drawn,
-                    inverse: 1.0 / (followed * drawn),
-                });
+                let drawn = view.share * odds * share * followed * choices;
+                found(Drawn::Chain(facets), 1.0 / drawn);
             }
-            let Some((facet, odds)) = self.met(&view, ray, select) else {
+            let Some((facet, chosen)) = self.met(&ray, select) else {
                 return;
             };
-            let goes_on = self.onward(facet, ray);
+            let goes_on = self.onward(facet, ray.direction);
+            let plane = self.facet(facet);
+            if beam {
+                view = view.and_then(|view| view.behind(self, facet));
+                if view.is_none() && target.beam(length as usize + 1) {
+                    return;
+                }
+            }
+            choices *= chosen;
+            ray.reflect(facet, plane);
+            if !beam && test < odds {
+                let image = self.image(&ray.facets, target);
+                let tries = uniforms.fresh(depth, order);
+                if let Some(inverse) = self.tried(viewer, target, direction, image, &ray, tries) {
+                    let image = Drawn::Image(image, ray.facets.len());
+                    found(image, inverse / (odds * followed));
+                }
+            }
             if onward >= goes_on {
                 return;
             }
-            followed *= odds * goes_on;
-            let Some(next) = view.behind(self, facet) else {
-                return;
-            };
-            ray = self.facets.list()[facet as usize].mirrored(ray);
-            view = next;
+            followed *= goes_on;
+        }
+    }
+
+    /// One over the probability with which a direction of density cos θ/π lies in the cone about an image and leads to it
+    /// as `ray` does, without bias; `None` where `direction`, which has led there, lies outside.
+    fn tried(
+        &self,
+        viewer: &Viewer,
+        target: &Target,
+        direction: DVec3,
+        image: DVec3,
+        ray: &Ray,
+        mut tries: Fresh,
+    ) -> Option<f64> {
+        let cone = self.cone(viewer, image);
+        if direction.dot(cone.axis) < cone.cos {
+            return None;
+        }
+        for count in 1..=MOST_TRIES {
+            let [u, v, accept, select] = tries.next();
+            let tried = crate::direction::in_cone(cone.axis, cone.cos, [u, v]);
+            if tried.dot(viewer.normal) <= accept * cone.steepest {
+                continue;
+            }
+            let mut retraced = Ray::new(viewer, tried);
+            let mut select = select;
+            while retraced.facets.len() < ray.facets.len()
+                && let Some((facet, _)) = self.met(&retraced, select)
+            {
+                retraced.reflect(facet, self.facet(facet));
+                [select, ..] = tries.next();
+            }
+            if retraced.facets.len() == ray.facets.len()
+                && self.same(self.image(&retraced.facets, target), image)
+            {
+                return Some(f64::from(count) / cone.share());
+            }
+        }
+        None
+    }
+
+    /// Whether two places are one.
+    pub(crate) fn same(&self, one: DVec3, other: DVec3) -> bool {
+        one.distance(other) <= self.apart
+    }
+
+    /// The directions about an image that are tried.
+    fn cone(&self, viewer: &Viewer, image: DVec3) -> Cone {
+        let span = image - viewer.point;
+        let distance = span.length();
+        let axis = span / distance;
+        let sine = (self.spread / distance).min(0.5);
+        let cos = (1.0 - sine * sine).sqrt();
+        let tilt = axis.dot(viewer.normal);
+        // The least angle to the normal in the cone.
+        let steepest = if tilt >= cos {
+            1.0
+        } else {
+            tilt * cos + (1.0 - tilt * tilt).max(0.0).sqrt() * sine
+        };
+        Cone {
+            axis,
+            cos,
+            steepest: steepest.max(0.0),
         }
     }
 
@@ -182,6 +295,13 @@ impl Mirrors {
         let Some((&last, before)) = chain.split_last() else {
             return 1.0;
         };
+        let odds = self.look_odds(viewer)
+            * self.onward_along(viewer, target, chain)
+            * tested(chain.len() as u32);
+        if !target.beam(chain.len()) {
+            let image = self.image(chain, target);
+            return odds * self.cone(viewer, image).share() * TRIED;
+        }
         let mut view = View::new(viewer);
         for &facet in before {
             match view.behind(self, facet) {
@@ -195,11 +315,7 @@ impl Mirrors {
         if own <= 0.0 {
             return 0.0;
         }
-        self.look_odds(viewer)
-            * self.onward_along(viewer, target, chain)
-            * view.share
-            * tested(chain.len() as u32)
-            * (own / sum)
+        odds * view.share * (own / sum)
     }
 
     /// The target's image behind the chain, as the viewer sees it.
@@ -217,10 +333,9 @@ impl Mirrors {
 
     /// Probability with which a ray, of any length, is followed behind a mirror.
     fn onward(&self, facet: u32, ray: DVec3) -> f64 {
-        let normal = self.facets.list()[facet as usize].normal;
-        let cos = (ray.dot(normal).abs() / ray.length()).min(1.0);
-        let mirror = self.optics[facet as usize].mirror(cos, 1.0 - cos * cos);
-        (ONWARD * mirror.bound()).clamp(LEAST_ONWARD, 1.0)
+        let bound = self.bound(facet, ray);
+        // Below 1 where light is lost, so that rays between strong mirrors end as the light does.
+        (ONWARD * bound).min(bound.sqrt()).max(LEAST_ONWARD)
     }
 
     /// The same for the light itself, behind all mirrors of a chain but the last.
@@ -304,13 +419,12 @@ impl Mirrors {
 
     /// One of the facets that a ray goes through next, with the probability of that choice: each is taken before those
     /// behind it as often as not.
-    fn met(&self, view: &View, ray: DVec3, u: f64) -> Option<(u32, f64)> {
-        let window = view.window(self, ray).unwrap_or(0.0);
+    fn met(&self, ray: &Ray, u: f64) -> Option<(u32, f64)> {
         let mut crossed: Vec<(f64, u32)> = Vec::new();
         for (index, facet) in (0..).zip(self.facets.list()) {
-            if view.facets.last() != Some(&index)
-                && let Some(at) = facet.crossing(view.beam.apex, ray)
-                && at > window
+            if ray.facets.last() != Some(&index)
+                && let Some(at) = facet.crossing(ray.apex, ray.direction)
+                && at > ray.passed
             {
                 crossed.push((at, index));
             }
@@ -329,6 +443,59 @@ impl Mirrors {
             left -= odds;
         }
         None
+    }
+}
+
+impl Target<'_> {
+    /// Whether a chain of so many mirrors is drawn by its beam.
+    fn beam(&self, length: usize) -> bool {
+        length <= LONGEST_BEAM || !self.finite
+    }
+}
+
+/// A ray that is followed from mirror to mirror, each taken as if nothing stood before it.
+struct Ray {
+    /// Image of the viewer, in m.
+    apex: DVec3,
+    /// Unit vector.
+    direction: DVec3,
+    /// Distance from the apex to the last mirror, in m.
+    passed: f64,
+    facets: Vec<u32>,
+}
+
+impl Ray {
+    fn new(viewer: &Viewer, direction: DVec3) -> Self {
+        Self {
+            apex: viewer.point,
+            direction,
+            passed: 0.0,
+            facets: Vec::new(),
+        }
+    }
+
+    fn reflect(&mut self, facet: u32, plane: &Facet) {
+        let depth = plane.height - self.apex.dot(plane.normal);
+        self.passed = depth / self.direction.dot(plane.normal);
+        self.apex = plane.image(self.apex);
+        self.direction = plane.mirrored(self.direction);
+        self.facets.push(facet);
+    }
+}
+
+/// Directions about one that leads to an image.
+struct Cone {
+    axis: DVec3,
+    cos: f64,
+    /// Greatest cosine to the viewer's normal.
+    steepest: f64,
+}
+
+impl Cone {
+    /// Solid angle × greatest cosine/π.
+    fn share(&self) -> f64 {
+        let sine2 = (1.0 - self.cos) * (1.0 + self.cos);
+        2.0 * sine2 / (1.0 + self.cos) * self.steepest
     }
 }
 

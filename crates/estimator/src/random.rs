@@ -83,6 +83,24 @@ impl Stream {
     }
 }
 
+/// Uniform numbers one after the other, for what needs an unknown number of them.
+#[derive(Debug, Clone)]
+pub(crate) struct Fresh {
+    key: u64,
+    taken: u64,
+}
+
+impl Fresh {
+    /// The next four numbers in [0, 1).
+    pub(crate) fn next(&mut self) -> [f64; 4] {
+        std::array::from_fn(|_| {
+            self.taken += 1;
+            let bits = mixed(self.key.wrapping_add(self.taken.wrapping_mul(GOLDEN)));
+            (bits >> 11) as f64 * (0.5 / (1u64 << 52) as f64)
+        })
+    }
+}
+
 /// All uniform numbers of one walk.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Uniforms {
@@ -101,6 +119,16 @@ impl Uniforms {
         let chain = u64::from(depth) << 32 | u64::from(order);
         let key = mixed(self.key ^ mixed(chain.wrapping_mul(GOLDEN)));
         Self { key, ..self }.at(SPREAD, Purpose::Reflect)
+    }
+
+    /// Numbers without end, for the image of that `order` by which the vertex at `depth` looks for an emitter.
+    #[must_use]
+    pub(crate) fn fresh(self, depth: u32, order: u32) -> Fresh {
+        let chain = u64::from(depth) << 32 | u64::from(order);
+        Fresh {
+            key: mixed(self.key ^ mixed(!chain.wrapping_mul(GOLDEN))),
+            taken: 0,
+        }
     }
 
     /// Four numbers in [0, 1), multiples of 2⁻⁵³, for the vertex at `depth`.

@@ -421,33 +421,37 @@ impl<'a> Walk<'a> {
             return;
         }
         let strength = |leaving, square| site.irradiance(leaving, square);
-        let target = target(&site, &strength);
-        mirrors.draw(&viewer, &target, self.uniforms, self.depth, |chain| {
-            let first = path.steps.len();
-            let found = self
-                .medium
-                .chained(&viewer, &target, &chain.facets, &mut path.steps);
-            let Some((toward, square, passage)) = found else {
-                path.steps.truncate(first);
-                return;
-            };
-            let leaving = -passage.arriving;
-            path.connections.push(Connection {
-                state: site.state,
-                toward,
-                leaving,
-                irradiance: weighted(
+        let target = target(&site, self.medium.surfaces.radius(), &strength);
+        mirrors.draw(
+            &viewer,
+            &target,
+            self.uniforms,
+            self.depth,
+            |drawn, inverse| {
+                let first = path.steps.len();
+                let found = self.medium.drawn(&viewer, &target, &drawn, &mut path.steps);
+                let Some((way, probability)) = found else {
+                    path.steps.truncate(first);
+                    return;
+                };
+                let (toward, leaving) = (way.start, -way.arriving);
+                path.connections.push(Connection {
+                    state: site.state,
                     toward,
                     leaving,
-                    square,
-                    passage.odds,
-                    chain.probability,
-                    chain.inverse,
-                ),
-                steps: first..path.steps.len(),
-                mirrored: true,
-            });
-        });
+                    irradiance: weighted(
+                        toward,
+                        leaving,
+                        way.square,
+                        way.odds,
+                        probability,
+                        inverse,
+                    ),
+                    steps: first..path.steps.len(),
+                    mirrored: true,
+                });
+            },
+        );
     }
 }
 
