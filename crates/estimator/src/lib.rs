@@ -13,6 +13,7 @@ mod exact;
 mod gather;
 mod local;
 mod pass;
+mod picture;
 mod random;
 mod reading;
 mod receiver;
@@ -21,6 +22,7 @@ mod run;
 mod statistics;
 mod trace;
 
+pub use picture::Picture;
 pub use results::{Answer, Group, Paired, Progress, Reading, Results, Stop};
 pub use run::run;
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};
