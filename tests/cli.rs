@@ -1,5 +1,6 @@
 //! The program itself: files, columns, exit statuses, and every way to get an input wrong.
 
+mod analyse;
 mod bad_input;
 mod printed;
 mod results;

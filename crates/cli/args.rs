@@ -18,6 +18,7 @@ Examples:
   malus check office.toml                         what is in it, and what is wrong
   malus run office.toml                           compute it; results go to results/office
   malus run office.toml --relative-error 0.005    the same, to 0.5 % everywhere
+  malus analyse results/office/view.tiff          how a camera's picture is polarised
 
 Exit status: 0 done, 1 the run failed, 2 bad arguments or a bad scene, 130 interrupted.";
 
@@ -40,6 +41,18 @@ Examples:
 
 Exit status: 0 the scene can be run (there may be warnings), 2 bad arguments or a bad scene.";
 
+const ANALYSE_EXAMPLES: &str = "\
+Examples:
+  malus analyse view.tiff                  how much is polarised, and along which axis
+  malus analyse view.tiff --angle 90       what polarising sunglasses show
+  malus analyse view.tiff --angle 0 --angle 45 -o filtered --exposure 1
+
+Results: NAME-s0.png (what the eye sees), NAME-dolp.png (degree of linear polarisation), NAME-aolp.png (its \
+angle) and for each angle NAME-filter-DEG.png and .tiff (radiance that passes, 32-bit floats). S0 and what \
+passes a filter are shown with one exposure: unpolarised light looks half as bright through any filter.
+
+Exit status: 0 done, 1 nothing can be written, 2 bad arguments or a bad picture.";
+
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
@@ -49,6 +62,9 @@ pub enum Command {
     /// Read a scene and say what was understood and what is wrong with it; compute nothing
     #[command(after_help = CHECK_EXAMPLES)]
     Check(Check),
+    /// Look at a camera's picture through a linear polarising filter, and at how its light is polarised
+    #[command(after_help = ANALYSE_EXAMPLES)]
+    Analyse(Analyse),
 }
 
 /// `malus run`.
@@ -123,6 +139,28 @@ pub struct Check {
     /// Put a value in place of the scene file's, by its dotted path, e.g. material.floor.a=0.3 (may be repeated)
     #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
     pub set: Vec<Override>,
+}
+
+/// `malus analyse`.
+#[derive(Args, Debug)]
+pub struct Analyse {
+    /// Picture of a camera, as `malus run` writes it: 32-bit floats S0, S1, S2, S3
+    #[arg(value_name = "NAME.tiff")]
+    pub picture: PathBuf,
+
+    /// Angle of a filter's transmission axis in degrees, from the picture's right, counter-clockwise as seen in the
+    /// picture, -360 to 360 (may be repeated)
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    pub angle: Vec<String>,
+
+    /// Brighter by so many powers of two, or darker, -30 to 30 [default: 0, at which half of the lit pixels are middle
+    /// grey or brighter]
+    #[arg(long, value_name = "EV", allow_hyphen_values = true)]
+    pub exposure: Option<String>,
+
+    /// Directory of the results [default: the picture's]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
 }
 
 /// `KEY=VALUE` as an override; the value may hold further equals signs.
@@ -226,7 +264,7 @@ mod tests {
             .command
         {
             Command::Run(run) => *run,
-            Command::Check(_) => unreachable!("run was asked for"),
+            _ => unreachable!("run was asked for"),
         }
     }
 

@@ -1,5 +1,6 @@
 //! `malus`: polarised light in rooms.
 
+mod analyse;
 mod args;
 mod check;
 mod colour;
@@ -14,6 +15,7 @@ mod number;
 mod output;
 mod overview;
 mod panel;
+mod picture;
 mod plan;
 mod progress;
 mod rows;
@@ -33,6 +35,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let end = match Arguments::parse().command {
         Command::Run(command) => run::run(&command),
+        Command::Analyse(command) => analyse::analyse(&command).map(|()| run::End::Complete),
         Command::Check(command) => check::check(&command).map(|()| run::End::Complete),
     };
     match end {

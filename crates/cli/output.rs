@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result};
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// A directory that can be written to.
@@ -35,14 +35,29 @@ impl Directory {
     /// # Errors
     /// It cannot be written; an earlier file of that name then stays as it was.
     pub fn write(&self, name: &str, content: &[u8]) -> Result<()> {
+        self.write_by(name, |file| Ok(file.write_all(content)?))
+    }
+
+    /// The same for a file that is written piece by piece: it need not be in memory as a whole.
+    ///
+    /// # Errors
+    /// It cannot be written, or what writes it fails; an earlier file of that name then stays as it was.
+    pub fn write_by(
+        &self,
+        name: &str,
+        fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
+    ) -> Result<()> {
         let path = self.0.join(name);
         let temporary = self.temporary(name);
-        let written = File::create(&temporary)
-            .and_then(|mut file| {
-                file.write_all(content)?;
-                file.sync_all()
-            })
-            .and_then(|()| fs::rename(&temporary, &path));
+        let filled = || -> Result<()> {
+            let mut file = BufWriter::new(File::create(&temporary)?);
+            fill(&mut file)?;
+            file.into_inner()
+                .map_err(|error| error.into_error())?
+                .sync_all()?;
+            Ok(fs::rename(&temporary, &path)?)
+        };
+        let written = filled();
         if written.is_err() {
             // The first error is the one to report.
             let _ = fs::remove_file(&temporary);

@@ -18,6 +18,7 @@ mod lookout;
 mod medium;
 mod mirrors;
 mod pass;
+mod picture;
 mod random;
 mod reading;
 mod receiver;
@@ -26,6 +27,7 @@ mod run;
 mod statistics;
 mod trace;
 
+pub use picture::Picture;
 pub use results::{Answer, Group, Paired, Progress, Reading, Results, Shares, Stop};
 pub use run::run;
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};
