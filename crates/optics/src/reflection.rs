@@ -90,16 +90,21 @@ impl Reflection {
 
     /// The reflectance Rp for light that oscillates in the plane of incidence.
     ///
-    /// Taken from C² + W² = Rs Rp, so it is accurate relative to itself next to Brewster's angle.
+    /// Of one pair of amplitudes, C² + W² = Rs Rp, and this is accurate relative to itself next to
+    /// Brewster's angle. A matrix that depolarises, as a pane's does, has C² + W² < Rs Rp: there this
+    /// is M00 − M01, accurate to the rounding of M00.
     #[must_use]
     #[inline]
     pub fn rp(&self) -> f64 {
         let rs = self.rs();
-        if rs > 0.0 {
+        let of_amplitudes = if rs > 0.0 {
             (self.c * self.c + self.w * self.w) / rs
         } else {
             0.0
-        }
+        };
+        // Both are at most Rp; the difference, but for its rounding, which must not count as light.
+        let rounding = 8.0 * f64::EPSILON * self.mean;
+        of_amplitudes.max(self.mean - self.half_difference - rounding)
     }
 
     /// C = Re(r_p r_s*): what remains of U in U, and of V in V.
@@ -116,7 +121,8 @@ impl Reflection {
         self.w
     }
 
-    /// The greatest reflectance for any state of polarisation, max(Rs, Rp) = M00 + |M01|.
+    /// The greatest reflectance for any state of polarisation, max(Rs, Rp) = M00 + |M01|, of a matrix
+    /// that depolarises too: √(C² + W²) ≤ √(Rs Rp).
     #[must_use]
     #[inline]
     pub fn bound(&self) -> f64 {
