@@ -49,6 +49,10 @@ mod basis;
 mod chain;
 mod coated;
 #[cfg(test)]
+mod coherency;
+#[cfg(test)]
+mod complex;
+#[cfg(test)]
 mod field;
 mod fresnel;
 mod material;

@@ -40,9 +40,8 @@ impl Pane {
         let (crossing, lost) = if tau >= 1.0 {
             (1.0, 0.0)
         } else {
-            // A next to 1 would lose the digits of 1 − A.
-            let absorbed = -libm::expm1(libm::log(tau) / inside.cos);
-            (1.0 - absorbed, absorbed * (2.0 - absorbed))
+            let exponent = libm::log(tau) / inside.cos;
+            (libm::exp(exponent), -libm::expm1(2.0 * exponent))
         };
         let (rs, rp) = (face.rs(), face.rp());
         let Refraction { ts, tp, .. } = inside;
@@ -126,3 +125,6 @@ impl Pane {
 fn share(part: f64, whole: f64) -> f64 {
     if whole > 0.0 { part / whole } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests;

@@ -90,21 +90,24 @@ impl Reflection {
 
     /// The reflectance Rp for light that oscillates in the plane of incidence.
     ///
-    /// Of one pair of amplitudes, C² + W² = Rs Rp, and this is accurate relative to itself next to
-    /// Brewster's angle. A matrix that depolarises, as a pane's does, has C² + W² < Rs Rp: there this
-    /// is M00 − M01, accurate to the rounding of M00.
+    /// Of one pair of amplitudes, C² + W² = Rs Rp, from which this is accurate relative to itself next
+    /// to Brewster's angle. A matrix that depolarises, as a pane's does, has C² + W² < Rs Rp: there
+    /// this is M00 − M01, accurate to the rounding of M00.
     #[must_use]
     #[inline]
     pub fn rp(&self) -> f64 {
+        let difference = self.mean - self.half_difference;
         let rs = self.rs();
         let of_amplitudes = if rs > 0.0 {
             (self.c * self.c + self.w * self.w) / rs
         } else {
             0.0
         };
-        // Both are at most Rp; the difference, but for its rounding, which must not count as light.
-        let rounding = 8.0 * f64::EPSILON * self.mean;
-        of_amplitudes.max(self.mean - self.half_difference - rounding)
+        if difference - of_amplitudes > 8.0 * f64::EPSILON * self.mean {
+            difference
+        } else {
+            of_amplitudes
+        }
     }
 
     /// C = Re(r_p r_s*): what remains of U in U, and of V in V.
