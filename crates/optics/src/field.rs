@@ -3,85 +3,13 @@
 //! E(t) = Re(**E** exp(−iωt)). Stokes components are taken by their definition, and reflection by
 //! the textbook's amplitude coefficients; nothing here uses the formulae under test.
 
-use std::ops::{Add, Div, Mul, Sub};
-
 use glam::DVec3;
 use proptest::prelude::*;
 
 use crate::{
     Basis, Carried, Incidence, Index, Rotator, Sensor, Stokes, angle_of_incidence,
-    basis::tests::unit_vector,
+    basis::tests::unit_vector, complex::Complex,
 };
-
-#[derive(Clone, Copy)]
-struct Complex {
-    re: f64,
-    im: f64,
-}
-
-impl Complex {
-    fn real(re: f64) -> Self {
-        Self { re, im: 0.0 }
-    }
-
-    fn conjugate(self) -> Self {
-        Self {
-            re: self.re,
-            im: -self.im,
-        }
-    }
-
-    /// The root with Im ≥ 0, by modulus and argument.
-    fn root(self) -> Self {
-        let (modulus, angle) = (self.re.hypot(self.im).sqrt(), 0.5 * self.im.atan2(self.re));
-        Self {
-            re: modulus * angle.cos(),
-            im: modulus * angle.sin(),
-        }
-    }
-}
-
-impl Add for Complex {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self {
-            re: self.re + other.re,
-            im: self.im + other.im,
-        }
-    }
-}
-
-impl Sub for Complex {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        Self {
-            re: self.re - other.re,
-            im: self.im - other.im,
-        }
-    }
-}
-
-impl Mul for Complex {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        Self {
-            re: self.re * other.re - self.im * other.im,
-            im: self.re * other.im + self.im * other.re,
-        }
-    }
-}
-
-impl Div for Complex {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
-        let square = other.re * other.re + other.im * other.im;
-        let product = self * other.conjugate();
-        Self {
-            re: product.re / square,
-            im: product.im / square,
-        }
-    }
-}
 
 /// A plane wave: its direction and the real and imaginary parts of its amplitude.
 #[derive(Clone, Copy)]

@@ -26,7 +26,7 @@ pub enum Index {
 
 /// Beyond this |n + ik| its square nears the end of f64, and a reflector is the ideal mirror to more
 /// digits than f64 has at any angle that f64 tells from grazing.
-const LARGEST: f64 = 1e100;
+pub(crate) const LARGEST: f64 = 1e100;
 
 impl Index {
     /// The index n + ik with n > 0 and k ≥ 0; the ideal mirror where either is infinite.

@@ -47,18 +47,26 @@ mod analyser;
 mod basis;
 #[cfg(test)]
 mod chain;
+mod coated;
+#[cfg(test)]
+mod coherency;
+#[cfg(test)]
+mod complex;
 #[cfg(test)]
 mod field;
 mod fresnel;
 mod material;
 mod mueller;
+mod pane;
 mod reflection;
+mod refraction;
 mod representation;
 mod rotator;
 mod stokes;
 
 pub use analyser::Analyser;
 pub use basis::{Basis, Carried, Emergence, Incidence, Sensor, angle_of_incidence};
+pub use coated::Coated;
 pub use fresnel::Index;
 pub use material::Material;
 pub use mueller::Mueller;

@@ -1,13 +1,19 @@
 //! Reflectors: what a surface does to light.
 
-use crate::{Analyser, Emergence, Incidence, Index, Reflection, Representation, Stokes};
+use crate::{
+    Analyser, Coated, Emergence, Incidence, Index, Reflection, Representation, Stokes, pane::Pane,
+};
 
 /// A reflector.
 ///
 /// It reflects in two ways. The mirror-like part, [`mirror`](Self::mirror), goes into one direction
-/// and keeps polarisation. The scattered part forgets how the light came: it is the outer product
-/// [`leaving`](Self::leaving) × [`entering`](Self::entering) over π, a kernel per steradian of
-/// projected solid angle, so light between two scatterings is one number.
+/// and keeps polarisation; a pane also lets light [`through`](Self::through). The scattered part
+/// forgets how the light came: it is the kernel
+///
+/// [`scattering`](Self::scattering)/π × [`leaving`](Self::leaving) × [`entering`](Self::entering)
+///
+/// per steradian of projected solid angle, an outer product, so light between two scatterings is one
+/// number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Material {
     /// Eq. 21: a·M_Fresnel + (1 − a)·M_Lambert, where M_Lambert is zero but for ρ in its corner.
@@ -19,108 +25,168 @@ pub enum Material {
         /// Refractive index of the mirror-like part.
         index: Index,
     },
+    /// A Lambertian base under a smooth clear coat.
+    Coated(Coated),
+    /// One plane-parallel sheet, thick against the length of coherence: the light that turns between
+    /// its faces adds up without interference.
+    Pane {
+        /// Refractive index of the sheet relative to the room, > 0.
+        n: f64,
+        /// Transmittance of one crossing along the normal, its faces left out, 0 … 1.
+        tau: f64,
+    },
 }
 
 impl Material {
     /// The mirror-like reflection at the angle of incidence θ, given by cos θ and sin² θ; zero where
-    /// the material has no such part.
+    /// the material has no such part. That of a pane comes from all its turns and depolarises.
     #[must_use]
     #[inline]
     pub fn mirror(&self, cos_incidence: f64, sin2_incidence: f64) -> Reflection {
-        let Self::Mixture {
-            fraction, index, ..
-        } = *self;
-        if fraction == 0.0 {
-            return Reflection::NONE;
+        match self {
+            Self::Mixture { fraction: 0.0, .. } => Reflection::NONE,
+            Self::Mixture {
+                fraction, index, ..
+            } => index.reflection(cos_incidence, sin2_incidence) * *fraction,
+            Self::Coated(coated) => coated.mirror(cos_incidence, sin2_incidence),
+            Self::Pane { n, tau } => Pane::reflection(*n, *tau, cos_incidence, sin2_incidence),
         }
-        index.reflection(cos_incidence, sin2_incidence) * fraction
     }
 
-    /// The greatest mirror-like reflectance for any state of polarisation, a·max(Rs, Rp), at most 1.
-    ///
-    /// A walk decides by this bound, which no Stokes vector enters, so that it is the same walk
-    /// whatever the number of components.
+    /// What passes a pane, at the angle of incidence θ, given by cos θ and sin² θ: a matrix of the same
+    /// form as a reflection's, for light that keeps its direction and its s axis. Zero for any other
+    /// material.
     #[must_use]
     #[inline]
-    pub fn mirror_bound(&self, cos_incidence: f64, sin2_incidence: f64) -> f64 {
-        self.mirror(cos_incidence, sin2_incidence).bound().min(1.0)
+    pub fn through(&self, cos_incidence: f64, sin2_incidence: f64) -> Reflection {
+        match self {
+            Self::Pane { n, tau } => Pane::transmission(*n, *tau, cos_incidence, sin2_incidence),
+            Self::Mixture { .. } | Self::Coated(_) => Reflection::NONE,
+        }
     }
 
-    /// Placeholder.
+    /// Whether light passes the material, in its own direction.
     #[must_use]
-    pub fn through(&self, _c: f64, _s: f64) -> Reflection {
-        Reflection::NONE
+    #[inline]
+    pub const fn is_pane(&self) -> bool {
+        matches!(self, Self::Pane { .. })
     }
-    /// Placeholder.
+
+    /// π times the scale of the scattering kernel: (1 − a)ρ for the mixture, ρ/(n² (1 − ρ r_i)) under a
+    /// coat.
     #[must_use]
-    pub fn is_pane(&self) -> bool {
-        false
+    #[inline]
+    pub const fn scattering(&self) -> f64 {
+        match self {
+            Self::Mixture { rho, fraction, .. } => (1.0 - *fraction) * *rho,
+            Self::Coated(coated) => coated.scattering(),
+            Self::Pane { .. } => 0.0,
+        }
     }
-    /// Placeholder.
+
+    /// Whether scattered light is polarised, and the share scattered depends on polarisation.
     #[must_use]
-    pub fn scattering(&self) -> f64 {
-        self.albedo()
-    }
-    /// Placeholder.
-    #[must_use]
+    #[inline]
     pub fn polarises_scattering(&self) -> bool {
-        false
-    }
-    /// Placeholder.
-    #[must_use]
-    pub fn diffuse_bound(&self, _c: f64, _s: f64) -> f64 {
-        self.albedo()
-    }
-    /// Placeholder.
-    #[must_use]
-    pub fn entering<const N: usize>(&self, _c: f64, _s: f64) -> Analyser<N, Incidence> {
-        Analyser::unpolarised(1.0)
-    }
-    /// Placeholder.
-    #[must_use]
-    pub fn leaving<const N: usize>(&self, _c: f64, _s: f64) -> Stokes<N, Emergence> {
-        Stokes::unpolarised(1.0)
+        matches!(self, Self::Coated(coated) if coated.n() > 1.0)
     }
 
-    /// The share of arriving unpolarised light that is scattered, (1 − a)ρ.
+    /// What the scattered part takes of light that arrives at the angle of incidence θ, given by cos θ
+    /// and sin² θ, without the scale of the kernel: (1, 0, 0, 0) for the mixture.
     #[must_use]
     #[inline]
-    pub fn albedo(&self) -> f64 {
-        let Self::Mixture { rho, fraction, .. } = *self;
-        (1.0 - fraction) * rho
+    pub fn entering<const N: usize>(
+        &self,
+        cos_incidence: f64,
+        sin2_incidence: f64,
+    ) -> Analyser<N, Incidence> {
+        match self {
+            Self::Coated(coated) => coated.entering(cos_incidence, sin2_incidence),
+            Self::Mixture { .. } | Self::Pane { .. } => Analyser::intensity(),
+        }
     }
 
-    /// Whether no light is lost at any angle: all that is not mirrored at normal incidence is scattered.
+    /// The state in which the scattered part leaves at the angle θ to the normal, given by cos θ and
+    /// sin² θ, in the basis whose **x** is the s axis: (1, 0, 0, 0) for the mixture.
+    #[must_use]
+    #[inline]
+    pub fn leaving<const N: usize>(
+        &self,
+        cos_emergence: f64,
+        sin2_emergence: f64,
+    ) -> Stokes<N, Emergence> {
+        match self {
+            Self::Coated(coated) => coated.leaving(cos_emergence, sin2_emergence),
+            Self::Mixture { .. } | Self::Pane { .. } => Stokes::unpolarised(1.0),
+        }
+    }
+
+    /// The probability with which a walk that meets the surface at the angle θ, given by cos θ and
+    /// sin² θ, scatters: the greatest share scattered for any state of polarisation, as far as the
+    /// mirror-like part leaves room for it.
+    ///
+    /// With the bound of [`mirror`](Self::mirror) it adds up to at most 1.
+    #[must_use]
+    #[inline]
+    pub fn diffuse_bound(&self, cos_incidence: f64, sin2_incidence: f64) -> f64 {
+        match self {
+            Self::Coated(coated) => coated.diffuse_bound(cos_incidence, sin2_incidence),
+            Self::Mixture { .. } | Self::Pane { .. } => self.scattering(),
+        }
+    }
+
+    /// The share of unpolarised light from all sides that is scattered: (1 − a)ρ for the mixture,
+    /// ρ (1 − r_e)²/(n² (1 − ρ r_i)) under a coat.
+    #[must_use]
+    #[inline]
+    pub const fn albedo(&self) -> f64 {
+        match self {
+            Self::Coated(coated) => coated.albedo(),
+            Self::Mixture { .. } | Self::Pane { .. } => self.scattering(),
+        }
+    }
+
+    /// Whether no light is lost at any angle: all that is neither mirrored nor let through at normal
+    /// incidence is scattered.
     #[must_use]
     pub fn is_lossless(&self) -> bool {
-        self.albedo() + self.mirror(1.0, 0.0).mean() >= 1.0 - 1e-12
+        let scattered = match self {
+            Self::Coated(coated) => coated.scattered(1.0, 0.0),
+            Self::Mixture { .. } | Self::Pane { .. } => self.scattering(),
+        };
+        let passed = self.mirror(1.0, 0.0).mean() + self.through(1.0, 0.0).mean();
+        scattered + passed >= 1.0 - 1e-12
     }
 
     /// The least representation that is exact for this material.
     ///
-    /// Without a mirror-like part, or where the index is the room's own, nothing is mirrored.
-    /// A dielectric met from the thinner side and the ideal mirror do not turn U into V; metals and
-    /// total reflection do.
+    /// Without a mirror-like part, or where the index is the room's own, nothing is polarised.
+    /// A dielectric met from the thinner side, alone, as a coat or as a pane, and the ideal mirror do
+    /// not turn U into V; metals and total reflection do.
     #[must_use]
     pub fn representation(&self) -> Representation {
-        match *self {
-            Self::Mixture { fraction: 0.0, .. }
-            | Self::Mixture {
-                index: Index::Relative { n: 1.0, k: 0.0 },
-                ..
-            } => Representation::Intensity,
-            Self::Mixture {
-                index: Index::Relative { n, k },
-                ..
-            } if n < 1.0 || k > 0.0 => Representation::Full,
-            Self::Mixture { .. } => Representation::Linear,
+        let index = match *self {
+            Self::Mixture { fraction: 0.0, .. } => return Representation::Intensity,
+            Self::Mixture { index, .. } => index,
+            Self::Coated(coated) => Index::new(coated.n(), 0.0),
+            Self::Pane { n, .. } => Index::new(n, 0.0),
+        };
+        match index {
+            Index::Relative { n: 1.0, k: 0.0 } => Representation::Intensity,
+            Index::Relative { n, k } if n < 1.0 || k > 0.0 => Representation::Full,
+            _ => Representation::Linear,
         }
     }
 
     /// The standard diffuse model of the same surface: a = 0, so ρ is reflected and nothing mirrored.
+    /// Of a coated diffuser its base remains; a pane stays what it is.
     #[must_use]
-    pub const fn without_fresnel(self) -> Self {
-        let Self::Mixture { rho, index, .. } = self;
+    pub fn without_fresnel(self) -> Self {
+        let (rho, index) = match self {
+            Self::Mixture { rho, index, .. } => (rho, index),
+            Self::Coated(coated) => (coated.rho(), Index::new(coated.n(), 0.0)),
+            Self::Pane { .. } => return self,
+        };
         Self::Mixture {
             rho,
             fraction: 0.0,
@@ -149,46 +215,117 @@ mod tests {
             assert_eq!((scaled + 0.0).to_bits(), (0.6 * plain + 0.0).to_bits());
         }
         let arriving = Stokes::<4, Incidence>::new([2.0, 1.0, -1.0, 0.5]);
-        let scattered =
-            material.leaving::<4>(0.3, 0.1) * (material.entering(0.6, 0.1) * arriving * 0.2);
+        let taken = material.scattering() * (material.entering(0.6, 0.64) * arriving);
         assert_eq!(
-            scattered,
+            material.leaving::<4>(0.3, 0.91) * taken,
             Mueller::<4, Incidence, Emergence>::depolariser(0.4 * 0.5) * arriving
         );
     }
 
-    #[test]
-    fn the_bound_is_the_greater_reflectance() {
-        let material = Material::Mixture {
-            rho: 0.5,
-            fraction: 0.5,
-            index: Index::new(3.0, 0.0),
-        };
-        let reflection = Index::new(3.0, 0.0).reflection(0.6, 0.64);
-        assert!((material.mirror_bound(0.6, 0.64) / (0.5 * reflection.rs()) - 1.0).abs() < 1e-15);
-        assert!(reflection.rs() > reflection.rp());
+    /// Every kind of reflector, at settings from none to all.
+    fn reflectors() -> Vec<Material> {
+        let mut all = Vec::new();
+        for share in [0.0, 0.3, 1.0] {
+            for n in [1.0, 1.0 + 1e-12, 1.5, 10.0, 1e3, f64::INFINITY] {
+                all.push(Material::Coated(Coated::new(share, n)));
+            }
+            for n in [0.5, 1.0, 1.0 + 1e-12, 1.5, 10.0, 1e3, f64::INFINITY] {
+                all.push(Material::Pane { n, tau: share });
+            }
+            for index in [
+                GLASS,
+                Index::Mirror,
+                Index::new(0.5, 0.0),
+                Index::new(0.183, 3.43),
+            ] {
+                for rho in [0.5, 1.0] {
+                    all.push(Material::Mixture {
+                        rho,
+                        fraction: share,
+                        index,
+                    });
+                }
+            }
+        }
+        all
+    }
+
+    /// cos θ and sin² θ from normal to grazing incidence.
+    fn angles() -> impl Iterator<Item = (f64, f64)> {
+        let cosines = (0..=1000).map(|step| f64::from(step) / 1000.0);
+        cosines
+            .chain([1e-9, 1e-300])
+            .map(|cos| (cos, (1.0 - cos) * (1.0 + cos)))
     }
 
     #[test]
-    fn no_material_reflects_more_than_arrives() {
-        for index in [
-            GLASS,
-            Index::Mirror,
-            Index::new(0.5, 0.0),
-            Index::new(0.183, 3.43),
-        ] {
-            for fraction in [0.0, 0.3, 1.0] {
-                let material = Material::Mixture {
-                    rho: 1.0,
-                    fraction,
-                    index,
-                };
-                for step in 0..=1000 {
-                    let cos = f64::from(step) / 1000.0;
-                    let bound = material.mirror_bound(cos, (1.0 - cos) * (1.0 + cos));
-                    assert!(bound <= 1.0 && bound + material.albedo() <= 1.0 + 1e-15);
+    fn a_walk_has_probabilities_that_add_up_to_at_most_one() {
+        for material in reflectors().into_iter().filter(|it| !it.is_pane()) {
+            for (cos, sin2) in angles() {
+                let (diffuse, mirror) = (
+                    material.diffuse_bound(cos, sin2),
+                    material.mirror(cos, sin2).bound(),
+                );
+                assert!(diffuse >= 0.0 && mirror >= 0.0, "{material:?} at {cos}");
+                assert!(diffuse + mirror <= 1.0 + 1e-15, "{material:?} at {cos}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_material_gives_back_more_than_arrives() {
+        // For light polarised along s and along p, and so for any: the mean is linear between them.
+        for material in reflectors() {
+            let hemisphere = match material {
+                Material::Coated(coated) => 1.0 - coated.hemispherical_reflectance(),
+                _ => 1.0,
+            };
+            for (cos, sin2) in angles() {
+                for q in [1.0, -1.0] {
+                    let light = Stokes::<4, Incidence>::new([1.0, q, 0.0, 0.0]);
+                    let sum = (material.mirror(cos, sin2) * light).i()
+                        + (material.through(cos, sin2) * light).i()
+                        + material.scattering()
+                            * hemisphere
+                            * (material.entering(cos, sin2) * light);
+                    assert!(
+                        (0.0..=1.0 + 1e-14).contains(&sum),
+                        "{sum}: {material:?} at {cos}"
+                    );
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_walk_scatters_with_the_greatest_share_that_any_light_has() {
+        // ρ = 0.3 leaves room: the share of p-polarised light, of which Tp = 1 enters at Brewster's angle.
+        let coated = Coated::new(0.3, 1.5);
+        let (cos, sin2) = ((1.0 / 3.25f64).sqrt(), 2.25 / 3.25);
+        let bound = Material::Coated(coated).diffuse_bound(cos, sin2);
+        assert!((bound / coated.returned() - 1.0).abs() < 1e-15);
+        // ρ = 1 does not: 1 − Rs = 144/169.
+        let bound = Material::Coated(Coated::new(1.0, 1.5)).diffuse_bound(cos, sin2);
+        assert!((bound - 144.0 / 169.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn only_a_white_or_clear_reflector_loses_nothing() {
+        let whole = |share: f64| share >= 1.0;
+        for material in reflectors() {
+            let expected = match material {
+                Material::Mixture {
+                    rho,
+                    fraction,
+                    index,
+                } => match index {
+                    Index::Mirror => whole(rho) || whole(fraction),
+                    Index::Relative { .. } => whole(rho) && fraction <= 0.0,
+                },
+                Material::Coated(coated) => whole(coated.rho()) || coated.n().is_infinite(),
+                Material::Pane { n, tau } => whole(tau) || n.is_infinite(),
+            };
+            assert_eq!(material.is_lossless(), expected, "{material:?}");
         }
     }
 
@@ -207,6 +344,20 @@ mod tests {
         assert_eq!(of(0.6, f64::INFINITY, 0.0), Representation::Linear);
         assert_eq!(of(0.6, 0.9, 0.0), Representation::Full);
         assert_eq!(of(0.6, 1.5, 1e-3), Representation::Full);
+        for (n, expected) in [
+            (1.0, Representation::Intensity),
+            (1.5, Representation::Linear),
+            (f64::INFINITY, Representation::Linear),
+        ] {
+            let coated = Material::Coated(Coated::new(0.5, n));
+            assert_eq!(coated.representation(), expected);
+            assert_eq!(coated.polarises_scattering(), n > 1.0);
+            let pane = Material::Pane { n, tau: 0.9 };
+            assert_eq!(pane.representation(), expected);
+            assert!(pane.is_pane() && !pane.polarises_scattering());
+        }
+        let thin = Material::Pane { n: 0.9, tau: 0.9 };
+        assert_eq!(thin.representation(), Representation::Full);
     }
 
     #[test]
@@ -220,5 +371,14 @@ mod tests {
         assert_eq!(diffuse.albedo().to_bits(), 0.5f64.to_bits());
         assert_eq!(diffuse.mirror(0.1, 0.99), Reflection::NONE);
         assert_eq!(diffuse.representation(), Representation::Intensity);
+    }
+
+    #[test]
+    fn the_diffuse_counterpart_of_a_coat_is_its_base_and_that_of_a_pane_itself() {
+        let diffuse = Material::Coated(Coated::new(0.7, 1.5)).without_fresnel();
+        assert_eq!(diffuse.albedo().to_bits(), 0.7f64.to_bits());
+        assert_eq!(diffuse.representation(), Representation::Intensity);
+        let pane = Material::Pane { n: 1.5, tau: 0.9 };
+        assert_eq!(pane.without_fresnel(), pane);
     }
 }

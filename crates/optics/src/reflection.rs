@@ -90,15 +90,23 @@ impl Reflection {
 
     /// The reflectance Rp for light that oscillates in the plane of incidence.
     ///
-    /// Taken from C² + W² = Rs Rp, so it is accurate relative to itself next to Brewster's angle.
+    /// Of one pair of amplitudes, C² + W² = Rs Rp, from which this is accurate relative to itself next
+    /// to Brewster's angle. A matrix that depolarises, as a pane's does, has C² + W² < Rs Rp: there
+    /// this is M00 − M01, accurate to the rounding of M00.
     #[must_use]
     #[inline]
     pub fn rp(&self) -> f64 {
+        let difference = self.mean - self.half_difference;
         let rs = self.rs();
-        if rs > 0.0 {
+        let of_amplitudes = if rs > 0.0 {
             (self.c * self.c + self.w * self.w) / rs
         } else {
             0.0
+        };
+        if difference - of_amplitudes > 8.0 * f64::EPSILON * self.mean {
+            difference
+        } else {
+            of_amplitudes
         }
     }
 
@@ -116,7 +124,8 @@ impl Reflection {
         self.w
     }
 
-    /// The greatest reflectance for any state of polarisation, max(Rs, Rp) = M00 + |M01|.
+    /// The greatest reflectance for any state of polarisation, max(Rs, Rp) = M00 + |M01|, of a matrix
+    /// that depolarises too: √(C² + W²) ≤ √(Rs Rp).
     #[must_use]
     #[inline]
     pub fn bound(&self) -> f64 {
