@@ -60,7 +60,7 @@ mod stokes;
 pub use analyser::Analyser;
 pub use basis::{Basis, Carried, Emergence, Incidence, Sensor, angle_of_incidence};
 pub use fresnel::Index;
-pub use material::Material;
+pub use material::{Coated, Material};
 pub use mueller::Mueller;
 pub use reflection::Reflection;
 pub use representation::Representation;

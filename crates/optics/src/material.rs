@@ -19,17 +19,50 @@ pub enum Material {
         /// Refractive index of the mirror-like part.
         index: Index,
     },
+    /// A diffuser under a smooth dielectric coat.
+    Coated(Coated),
+    /// One plane-parallel sheet.
+    Pane {
+        /// Refractive index n > 0, real.
+        n: f64,
+        /// Inner transmittance at normal incidence, 0 … 1.
+        tau: f64,
+    },
+}
+
+/// A diffuser of albedo ρ under a smooth coat of index n.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coated {
+    rho: f64,
+    n: f64,
+}
+
+impl Coated {
+    /// Albedo ρ of the base, 0 … 1, under a coat of index n ≥ 1.
+    #[must_use]
+    pub const fn new(rho: f64, n: f64) -> Self {
+        Self { rho, n }
+    }
 }
 
 impl Material {
+    /// Whether light passes through.
+    #[must_use]
+    pub const fn is_pane(&self) -> bool {
+        matches!(self, Self::Pane { .. })
+    }
+
     /// The mirror-like reflection at the angle of incidence θ, given by cos θ and sin² θ; zero where
     /// the material has no such part.
     #[must_use]
     #[inline]
     pub fn mirror(&self, cos_incidence: f64, sin2_incidence: f64) -> Reflection {
-        let Self::Mixture {
-            fraction, index, ..
-        } = *self;
+        let (fraction, index) = match *self {
+            Self::Mixture {
+                fraction, index, ..
+            } => (fraction, index),
+            Self::Coated(Coated { n, .. }) | Self::Pane { n, .. } => (1.0, Index::new(n, 0.0)),
+        };
         if fraction == 0.0 {
             return Reflection::NONE;
         }
@@ -66,14 +99,21 @@ impl Material {
     #[must_use]
     #[inline]
     pub fn albedo(&self) -> f64 {
-        let Self::Mixture { rho, fraction, .. } = *self;
-        (1.0 - fraction) * rho
+        match *self {
+            Self::Mixture { rho, fraction, .. } => (1.0 - fraction) * rho,
+            Self::Coated(Coated { rho, .. }) => rho,
+            Self::Pane { .. } => 0.0,
+        }
     }
 
     /// Whether no light is lost at any angle: all that is not mirrored at normal incidence is scattered.
     #[must_use]
     pub fn is_lossless(&self) -> bool {
-        self.albedo() + self.mirror(1.0, 0.0).mean() >= 1.0 - 1e-12
+        match *self {
+            Self::Mixture { .. } => self.albedo() + self.mirror(1.0, 0.0).mean() >= 1.0 - 1e-12,
+            Self::Coated(Coated { rho, .. }) => rho >= 1.0 - 1e-12,
+            Self::Pane { tau, .. } => tau >= 1.0 - 1e-12,
+        }
     }
 
     /// The least representation that is exact for this material.
@@ -93,14 +133,18 @@ impl Material {
                 index: Index::Relative { n, k },
                 ..
             } if n < 1.0 || k > 0.0 => Representation::Full,
-            Self::Mixture { .. } => Representation::Linear,
+            Self::Mixture { .. } | Self::Coated(_) | Self::Pane { .. } => Representation::Linear,
         }
     }
 
     /// The standard diffuse model of the same surface: a = 0, so ρ is reflected and nothing mirrored.
     #[must_use]
     pub const fn without_fresnel(self) -> Self {
-        let Self::Mixture { rho, index, .. } = self;
+        let (rho, index) = match self {
+            Self::Mixture { rho, index, .. } => (rho, index),
+            Self::Coated(Coated { rho, .. }) => (rho, Index::Mirror),
+            Self::Pane { .. } => return self,
+        };
         Self::Mixture {
             rho,
             fraction: 0.0,
