@@ -1,6 +1,5 @@
 //! What is wrong with the geometry, in words.
 
-use crate::Sensor;
 use glam::DVec3;
 use malus_geometry::defects::{Edges, ObjectDefects, Report};
 use malus_geometry::{Coincidence, Surfaces};
@@ -9,12 +8,13 @@ use std::collections::{BTreeMap, BTreeSet};
 /// How many names or places a sentence lists before it counts the rest.
 const LISTED: usize = 5;
 
-/// One sentence for each kind of defect and object, with a place to look at.
+/// One sentence for each kind of defect and object, with a place to look at; where an `observer` is, in m, a solid may
+/// be a room.
 pub(crate) fn warnings(
     report: &Report,
     surfaces: &Surfaces,
     objects: &[String],
-    sensors: &[Sensor],
+    observers: &[DVec3],
 ) -> Vec<String> {
     let flush = flush(surfaces);
     let name = |object: u32| &objects[object as usize];
@@ -49,8 +49,7 @@ pub(crate) fn warnings(
     warnings.extend(boundary(&sheets.collect::<Vec<_>>(), objects));
     for solid in &report.inside_out {
         let holds = |point: DVec3| point.cmpge(solid.min).all() && point.cmple(solid.max).all();
-        let mut points = sensors.iter().flat_map(|sensor| &sensor.points);
-        if !points.any(|point| holds(point.position)) {
+        if !observers.iter().any(|point| holds(*point)) {
             warnings.push(format!(
                 "object {:?} is inside out: its normals point into its {:.4} m³ near {}",
                 name(solid.object),
@@ -180,10 +179,10 @@ mod tests {
     use super::*;
     use malus_geometry::{Mesh, defects, shape};
 
-    fn told(mesh: &Mesh, sensors: &[Sensor]) -> String {
+    fn told(mesh: &Mesh, observers: &[DVec3]) -> String {
         let objects = ["Room".to_owned(), "Fin".to_owned()];
         let surfaces = Surfaces::new(mesh.clone()).unwrap();
-        warnings(&defects::of(mesh), &surfaces, &objects, sensors).join("\n")
+        warnings(&defects::of(mesh), &surfaces, &objects, observers).join("\n")
     }
 
     fn room(inward: bool) -> Mesh {

@@ -111,7 +111,7 @@ fn objects_share_a_surface_unless_their_own_properties_differ() {
     assert_eq!(surfaces, [0, 0, 1]);
     assert_eq!(built.materials[0].object, None);
     assert_eq!(built.materials[1].object.as_deref(), Some("C"));
-    assert_eq!(built.materials[1].values[0].value, "0.1");
+    assert_eq!(built.materials[1].values[1].value, "0.1");
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn faces_without_a_material_take_all_from_their_object() {
     assert_eq!(
         (
             built.materials[0].name.as_str(),
-            built.materials[0].values[0].value.as_str()
+            built.materials[0].values[1].value.as_str()
         ),
         (NAMELESS, "0.3")
     );

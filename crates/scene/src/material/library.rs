@@ -1,6 +1,7 @@
 //! The materials of the scene file: which of them give a value to a name.
 
 use super::Origin;
+use super::kind::Kind;
 use crate::allowed::Allowed;
 use crate::error::Error;
 use crate::nearest::hint;
@@ -13,10 +14,12 @@ use globset::{Glob, GlobMatcher};
 /// Values as written under one name; each may be missing.
 #[derive(Debug, Default)]
 pub(crate) struct Written {
+    pub(crate) kind: Option<Located<Kind>>,
     pub(crate) rho: Option<Located<f64>>,
     pub(crate) a: Option<Located<f64>>,
     pub(crate) n: Option<Located<f64>>,
     pub(crate) k: Option<Located<f64>>,
+    pub(crate) tau: Option<Located<f64>>,
     pub(crate) exitance: Option<Located<f64>>,
     pub(crate) emission_stokes: Option<Located<[f64; 4]>>,
     pub(crate) emission_axis: Option<Located<DVec3>>,
@@ -75,23 +78,53 @@ impl Library {
         name: &str,
         pick: impl Fn(&Written) -> Option<&Located<T>>,
     ) -> Option<(T, Origin)> {
-        let mut best: Option<(usize, (T, Origin))> = None;
+        let (definition, located) = self.find(name, pick)?;
+        let at = &located.at;
+        let origin = if definition.name == name {
+            Origin::Exact(at.to_string())
+        } else {
+            Origin::Glob(format!("{:?} at {at}", definition.name))
+        };
+        Some((located.value.clone(), origin))
+    }
+
+    /// Where the value stands that [`value`](Self::value) finds, and how closely its table names the material: by the
+    /// number of characters of its glob, `usize::MAX` for the exact name.
+    pub(crate) fn place<'a, T: 'a>(
+        &'a self,
+        name: &str,
+        pick: impl Fn(&Written) -> Option<&Located<T>>,
+    ) -> Option<(&'a Place, usize)> {
+        let (definition, located) = self.find(name, pick)?;
+        let closeness = if definition.name == name {
+            usize::MAX
+        } else {
+            definition.length()
+        };
+        Some((&located.at, closeness))
+    }
+
+    fn find<T>(
+        &self,
+        name: &str,
+        pick: impl Fn(&Written) -> Option<&Located<T>>,
+    ) -> Option<(&Definition, &Located<T>)> {
+        let mut best: Option<(&Definition, &Located<T>)> = None;
         for definition in &self.definitions {
             let Some(located) = pick(&definition.written) else {
                 continue;
             };
             if definition.name == name {
-                return Some((located.value.clone(), Origin::Exact(located.at.to_string())));
+                return Some((definition, located));
             }
-            let length = definition.name.chars().count();
+            let length = definition.length();
             if definition.matches(name)
-                && best.as_ref().is_none_or(|(longest, _)| length >= *longest)
+                && best.is_none_or(|(longest, _)| length >= longest.length())
             {
-                let origin = Origin::Glob(format!("{:?} at {}", definition.name, located.at));
-                best = Some((length, (located.value.clone(), origin)));
+                best = Some((definition, located));
             }
         }
-        best.map(|(_, value)| value)
+        best
     }
 
     /// Whether the scene file says anything of the material `name`.
@@ -154,6 +187,10 @@ impl Definition {
         self.is_glob() && self.glob.as_ref().is_some_and(|glob| glob.is_match(name))
     }
 
+    fn length(&self) -> usize {
+        self.name.chars().count()
+    }
+
     fn is_glob(&self) -> bool {
         is_glob(&self.name)
     }
@@ -166,20 +203,7 @@ pub(crate) fn is_glob(name: &str) -> bool {
 
 impl Written {
     fn read(mut table: Reader) -> Result<Self, Error> {
-        if let Some(field) = table.take("kind") {
-            let kind = field.choice(&[
-                ("mixture", "mixture"),
-                ("coated", "coated"),
-                ("pane", "pane"),
-            ])?;
-            if kind != "mixture" {
-                return Err(Error::NotAvailable {
-                    at: field.at().to_string(),
-                    what: format!("the material kind {kind:?}"),
-                    instead: "use \"mixture\"".into(),
-                });
-            }
-        }
+        let kind = table.take("kind");
         let mut number = |key, allowed| {
             let Some(field) = table.take(key) else {
                 return Ok(None);
@@ -189,10 +213,12 @@ impl Written {
             Ok::<_, Error>(Some(Located { value, at }))
         };
         let written = Self {
+            kind: located(kind, |field| field.choice(&Kind::CHOICES))?,
             rho: number("rho", Allowed::Share)?,
             a: number("a", Allowed::Share)?,
             n: number("n", Allowed::Index)?,
             k: number("k", Allowed::NotNegative)?,
+            tau: number("tau", Allowed::Share)?,
             exitance: number("exitance", Allowed::NotNegative)?,
             emission_stokes: located(table.take("emission_stokes"), |field| state(&field))?,
             emission_axis: located(table.take("emission_axis"), |field| field.direction())?,
@@ -326,11 +352,16 @@ mod tests {
     }
 
     #[test]
-    fn kinds_to_come_are_refused_and_bad_values_located() {
+    fn bad_values_are_located() {
         let message = |text: &str| library(text).err().unwrap();
-        let error = message("[material.x]\nkind = \"pane\"");
+        let error = message("[material.x]\nkind = \"coat\"");
         assert!(
-            error.contains("room.toml:2:8") && error.contains("not available yet"),
+            error.contains("room.toml:2:8") && error.contains("the nearest is \"coated\""),
+            "{error}"
+        );
+        let error = message("[material.x]\ntau = 1.5");
+        assert!(
+            error.starts_with("room.toml:2:7: [material.x] tau must be a number from 0 to 1"),
             "{error}"
         );
         let error = message("[material.x]\nrho = 1.5");
