@@ -8,15 +8,17 @@ use std::collections::{BTreeMap, BTreeSet};
 /// How many names or places a sentence lists before it counts the rest.
 const LISTED: usize = 5;
 
-/// One sentence for each kind of defect and object, with a place to look at; where an `observer` is, in m, a solid may
-/// be a room.
+/// One sentence for each kind of defect and object, with a place to look at; where an observer is, in m, a solid may
+/// be a room, and objects that are `sheets` have rims rightly.
 pub(crate) fn warnings(
     report: &Report,
     surfaces: &Surfaces,
     objects: &[String],
     observers: &[DVec3],
+    sheets: &BTreeSet<u32>,
 ) -> Vec<String> {
-    let flush = flush(surfaces);
+    let mut rimmed = flush(surfaces);
+    rimmed.extend(sheets);
     let name = |object: u32| &objects[object as usize];
     let mut warnings = Vec::new();
     for found in &report.objects {
@@ -42,11 +44,11 @@ pub(crate) fn warnings(
             tell(edges.count, &format!("{what}, {}", longest(edges)));
         }
     }
-    let sheets = report
+    let others = report
         .objects
         .iter()
-        .filter(|found| !flush.contains(&found.object));
-    warnings.extend(boundary(&sheets.collect::<Vec<_>>(), objects));
+        .filter(|found| !rimmed.contains(&found.object));
+    warnings.extend(boundary(&others.collect::<Vec<_>>(), objects));
     for solid in &report.inside_out {
         let holds = |point: DVec3| point.cmpge(solid.min).all() && point.cmple(solid.max).all();
         if !observers.iter().any(|point| holds(*point)) {
@@ -73,7 +75,7 @@ pub(crate) fn warnings(
     let holes: Vec<_> = report
         .holes
         .iter()
-        .filter(|hole| !hole.objects.iter().all(|object| flush.contains(object)))
+        .filter(|hole| !hole.objects.iter().all(|object| rimmed.contains(object)))
         .collect();
     for hole in holes.iter().take(LISTED) {
         let names: Vec<String> = hole.objects.iter().map(|it| name(*it).clone()).collect();
@@ -182,7 +184,14 @@ mod tests {
     fn told(mesh: &Mesh, observers: &[DVec3]) -> String {
         let objects = ["Room".to_owned(), "Fin".to_owned()];
         let surfaces = Surfaces::new(mesh.clone()).unwrap();
-        warnings(&defects::of(mesh), &surfaces, &objects, observers).join("\n")
+        warnings(
+            &defects::of(mesh),
+            &surfaces,
+            &objects,
+            observers,
+            &BTreeSet::new(),
+        )
+        .join("\n")
     }
 
     fn room(inward: bool) -> Mesh {

@@ -61,3 +61,16 @@ fn glass(solid: &Solid<'_>, surfaces: &Surfaces, materials: &[Material]) -> Opti
     let thickness = 2.0 * solid.volume() / all;
     first.filter(|_| 2.0 * clear > all && thickness > surfaces.tolerance())
 }
+
+/// Objects that are panes throughout.
+pub(crate) fn sheets(surfaces: &Surfaces, materials: &[Material]) -> BTreeSet<u32> {
+    let mesh = surfaces.mesh();
+    let pairs = || mesh.objects.iter().zip(&mesh.surfaces);
+    let is_pane = |surface: &u32| materials[*surface as usize].optics.is_pane();
+    let opaque: BTreeSet<u32> = pairs()
+        .filter(|(_, surface)| !is_pane(surface))
+        .map(|(object, _)| *object)
+        .collect();
+    let clear = pairs().filter(|(object, _)| !opaque.contains(object));
+    clear.map(|(object, _)| *object).collect()
+}

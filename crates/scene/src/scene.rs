@@ -109,6 +109,7 @@ impl Scene {
             &surfaces,
             &assembly.objects,
             &observers(&sensors, &cameras),
+            &panes::sheets(&surfaces, &materials),
         ));
         let labels: Vec<String> = materials.iter().map(|it| it.name.clone()).collect();
         let coincidences = defects::coincidences(&surfaces, &assembly.objects, &labels);

@@ -1,6 +1,7 @@
 //! Panes and coats in scenes: where they can be, what they need, whether light is lost.
 
 use super::*;
+use malus_optics::Material::{Coated, Pane};
 
 const ROOM: &str = "[[shape]]\nkind = \"box\"\nmin = [0, 0, 0]\nmax = [4, 3, 2.5]\ninward = true\nmaterial = \"plaster\"\n\
     [material.plaster]\nrho = 0.5\n[material.glass]\nkind = \"pane\"\n";
@@ -32,7 +33,7 @@ fn open_room(wall: &str) -> String {
 #[test]
 fn a_sheet_may_be_a_pane_and_polarises() {
     let scene = Room::new(&format!("{ROOM}{SHEET}{LAMP}{FLOOR}")).load();
-    let glass = malus_optics::Material::Pane { n: 1.5, tau: 1.0 };
+    let glass = Pane { n: 1.5, tau: 1.0 };
     assert_eq!(scene.materials[1].optics, glass);
     assert_eq!(scene.need.representation, Representation::Linear);
     assert!(
@@ -47,10 +48,7 @@ fn a_coat_polarises() {
     let room = Room::new(&format!("{CUBE}{LAMP}{FLOOR}"));
     let scene = room.with(&[("material.plaster.kind", "coated")]).unwrap();
     let coated = malus_optics::Coated::new(0.5, 1.5);
-    assert_eq!(
-        scene.materials[0].optics,
-        malus_optics::Material::Coated(coated)
-    );
+    assert_eq!(scene.materials[0].optics, Coated(coated));
     assert_eq!(scene.need.representation, Representation::Linear);
     assert!(
         scene.need.reason.contains("by its coat"),
@@ -166,4 +164,73 @@ fn light_enters_a_solid_through_a_pane() {
         ),
     );
     assert!(room.load().sensors[0].points[0].enclosed);
+}
+
+/// A triangle in the plane z = 1, of glass by its file's own fields; `extras` are those of its material.
+fn glass_sheet(extras: &str) -> Room {
+    let room = Room::new(&format!(
+        "[[mesh]]\nfile = \"sheet.gltf\"\n{CUBE}{LAMP}{FLOOR}"
+    ));
+    let bytes: Vec<u8> = [0.0_f32, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, -1.0]
+        .iter()
+        .flat_map(|number| number.to_le_bytes())
+        .collect();
+    std::fs::write(room.folder.path().join("sheet.bin"), bytes).unwrap();
+    let text = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0, "name": "Window"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+        "extensionsUsed": ["KHR_materials_transmission", "KHR_materials_ior"],
+        "materials": [{"name": "Glass", "extras": EXTRAS,
+            "pbrMetallicRoughness": {"baseColorFactor": [0.5, 1, 0.5, 1], "metallicFactor": 0, "roughnessFactor": 0},
+            "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_ior": {"ior": 1.517}}}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 1, -1], "max": [1, 1, 0]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": "sheet.bin"}]}"#;
+    room.write("sheet.gltf", &text.replace("EXTRAS", extras));
+    room
+}
+
+#[test]
+fn a_sheet_that_transmits_by_its_file_is_a_pane() {
+    let scene = glass_sheet("{}").load();
+    let glass = &scene.materials[0];
+    let Pane { n, tau } = glass.optics else {
+        panic!("a pane, not {:?}", glass.optics)
+    };
+    // The base colour's luminance, by Rec. 709.
+    let luminance = 0.5 * (0.2126 + 0.0722) + 0.7152;
+    assert!((n - 1.517).abs() < 1e-15 && (tau - luminance).abs() < 1e-15);
+    let origins: Vec<String> = glass.values[..3]
+        .iter()
+        .map(|it| it.origin.to_string())
+        .collect();
+    assert_eq!(
+        origins,
+        [
+            "KHR_materials_transmission ≥ 0.5",
+            "KHR_materials_ior",
+            "base colour"
+        ]
+    );
+    assert!(!has(&scene.warnings, "Glass"), "{:?}", scene.warnings);
+}
+
+#[test]
+fn custom_properties_go_before_the_file_s_own_glass() {
+    let glass = |extras: &str| glass_sheet(extras).with(&[]);
+    let optics = |extras: &str| glass(extras).unwrap().materials[0].optics;
+    let Pane { tau, .. } = optics(r#"{"malus_tau": 0.25}"#) else {
+        panic!("a pane")
+    };
+    assert!((tau - 0.25).abs() < 1e-15);
+    assert!(!optics(r#"{"malus_kind": "mixture"}"#).is_pane());
+    assert!(!optics(r#"{"malus_a": 0.5}"#).is_pane());
+    let error = glass(r#"{"malus_kind": "pane", "malus_rho": 0.5}"#)
+        .err()
+        .unwrap();
+    assert!(
+        error.contains(
+            "object \"Window\" (sheet.gltf), material \"Glass\": malus_rho of the material is given"
+        ),
+        "{error}"
+    );
 }
