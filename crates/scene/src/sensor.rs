@@ -1,5 +1,6 @@
 //! Where light is measured: points with normals, in named groups.
 
+mod aim;
 pub(crate) mod described;
 pub(crate) mod faces;
 mod lattice;

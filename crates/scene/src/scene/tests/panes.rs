@@ -94,12 +94,10 @@ fn a_slab_with_edges_of_another_material_is_no_pane_and_a_room_with_a_window_is_
         }
         text
     };
-    let text = format!(
-        "[[mesh]]\nfile = \"room.obj\"\nup = \"z\"\n[material.Clear]\nkind = \"pane\"\n\
+    let text = "[[mesh]]\nfile = \"room.obj\"\nup = \"z\"\n[material.Clear]\nkind = \"pane\"\n\
          [[source]]\nkind = \"point\"\nposition = [0.5, 0.5, 4]\nintensity = 1\n\
-         [[sensor]]\nname = \"a\"\npoints = [[0.5, 0.5, 3]]\n"
-    );
-    let room = Room::new(&text);
+         [[sensor]]\nname = \"a\"\npoints = [[0.5, 0.5, 3]]\n";
+    let room = Room::new(text);
     room.write(
         "room.mtl",
         "newmtl Frame\nKd 0.5 0.5 0.5\nnewmtl Clear\nKd 1 1 1\n",
