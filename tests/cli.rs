@@ -6,7 +6,7 @@ mod printed;
 mod results;
 mod stopping;
 
-pub use bad_input::assert_told;
+pub use bad_input::{assert_told, refusal};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 

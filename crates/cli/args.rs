@@ -104,7 +104,8 @@ pub struct Run {
     #[arg(long, value_name = "MODEL")]
     pub model: Option<String>,
 
-    /// How light is joined to the sensors: auto, local (walks from the lamps) or gather (walks from the sensors)
+    /// How light is joined to the sensors: auto, local (walks from the lamps), gather (walks from the sensors) or
+    /// direct (hits of walks from the lamps, counted in cells of the size run.cell)
     #[arg(long, value_name = "ESTIMATOR")]
     pub estimator: Option<String>,
 

@@ -6,7 +6,7 @@ use crate::number::{significant, triple};
 use crate::run::print;
 use crate::table::{Edge, Table};
 use anyhow::Context;
-use malus_scene::{EmitterReport, MaterialReport, Report, Scene, SensorReport};
+use malus_scene::{CameraReport, EmitterReport, MaterialReport, Report, Scene, SensorReport};
 
 /// Loads the scene and prints what was understood of it.
 ///
@@ -45,10 +45,20 @@ fn text(report: &Report) -> String {
     }
     text += "\nEmitters\n";
     text += &emitters(&report.emitters, unit).text("  ");
-    text += "\nSensors\n";
-    text += &sensors(&report.sensors).text("  ");
+    if !report.sensors.is_empty() {
+        text += "\nSensors\n";
+        text += &sensors(&report.sensors).text("  ");
+    }
+    if !report.cameras.is_empty() {
+        text += "\nCameras\n";
+        text += &cameras(&report.cameras).text("  ");
+    }
+    let outlook = match report.sensors.is_empty() {
+        true => "cameras",
+        false => "sensors",
+    };
     text += &format!(
-        "\nRepresentation {}: {}\n{} % of the directions from the sensors leave the geometry\n",
+        "\nRepresentation {}: {}\n{} % of the directions from the {outlook} leave the geometry\n",
         report.representation,
         report.representation_reason,
         significant(100.0 * report.escaping, 2)
@@ -145,6 +155,7 @@ fn emitters(emitters: &[EmitterReport], unit: &str) -> Table {
 fn sensors(sensors: &[SensorReport]) -> Table {
     let columns = [
         ("name", Edge::Left),
+        ("quantity", Edge::Left),
         ("layout", Edge::Left),
         ("points", Edge::Right),
         ("enclosed", Edge::Right),
@@ -154,13 +165,43 @@ fn sensors(sensors: &[SensorReport]) -> Table {
     let mut table = Table::new(columns.map(|(title, edge)| (title.to_owned(), edge)));
     for sensor in sensors {
         let [low, high] = sensor.bounds_m.map(triple);
+        let quantity = match sensor.direction {
+            Some(direction) => format!("{} along {}", sensor.quantity, triple(direction)),
+            None => sensor.quantity.to_owned(),
+        };
         table.row([
             sensor.name.clone(),
+            quantity,
             sensor.layout.to_owned(),
             sensor.count.to_string(),
             sensor.enclosed.to_string(),
             low,
             high,
+        ]);
+    }
+    table
+}
+
+fn cameras(cameras: &[CameraReport]) -> Table {
+    let columns = [
+        ("name", Edge::Left),
+        ("at, m", Edge::Left),
+        ("looks along", Edge::Left),
+        ("up", Edge::Left),
+        ("across", Edge::Right),
+        ("picture", Edge::Right),
+        ("walks a pixel", Edge::Right),
+    ];
+    let mut table = Table::new(columns.map(|(title, edge)| (title.to_owned(), edge)));
+    for camera in cameras {
+        table.row([
+            camera.name.clone(),
+            triple(camera.position_m),
+            triple(camera.forward),
+            triple(camera.up),
+            format!("{}°", significant(camera.fov_deg, 4)),
+            format!("{} × {}", camera.width, camera.height),
+            camera.samples.to_string(),
         ]);
     }
     table
@@ -197,6 +238,48 @@ mod tests {
              rho    0.5  room.toml:9:7\n    \
              default: a 0, n 1.5\n"
         );
+    }
+
+    #[test]
+    fn a_radiance_shows_where_its_sensor_looks() {
+        let sensor = |quantity, direction| SensorReport {
+            name: "screen".into(),
+            quantity,
+            direction,
+            layout: "points",
+            count: 1,
+            enclosed: 0,
+            bounds_m: [[1.0, 2.0, 0.5]; 2],
+        };
+        let text = |quantity, direction| sensors(&[sensor(quantity, direction)]).text("");
+        assert!(text("radiance", Some([0.0, 0.0, -1.0])).contains("radiance along (0, 0, -1)"));
+        assert!(text("radiance", None).contains("  radiance  points"));
+        assert!(text("irradiance", None).contains("  irradiance  points"));
+    }
+
+    #[test]
+    fn a_camera_shows_its_view_and_its_picture() {
+        let camera = CameraReport {
+            name: "door".into(),
+            position_m: [0.5, 0.25, 1.6],
+            forward: [0.0, 1.0, 0.0],
+            up: [0.0, 0.0, 1.0],
+            fov_deg: 70.0,
+            width: 640,
+            height: 480,
+            samples: 64,
+        };
+        let text = cameras(&[camera]).text("");
+        for part in [
+            "door",
+            "(0.5, 0.25, 1.6)",
+            "(0, 1, 0)",
+            "70.00°",
+            "640 × 480",
+            "64",
+        ] {
+            assert!(text.contains(part), "no {part:?} in:\n{text}");
+        }
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Every way to get an input wrong ends in exit status 2 and one error that says where, what was found, what is allowed.
 
 mod arguments;
+mod cameras;
+mod kinds;
 mod meshes;
 mod sensors;
 mod values;
@@ -202,38 +204,6 @@ fn an_unknown_kind_is_told_with_the_known_ones() {
             "[run]",
             "[scene]\nunit = \"lux\"\n[run]",
             &["room.toml:22:8: ", "unit", "\"lux\"", "\"lm\" or \"W\""],
-        ),
-    ]);
-}
-
-#[test]
-fn what_is_not_available_yet_says_so_and_what_to_do_instead() {
-    assert_each(&[
-        (
-            "rho = 0.5",
-            "kind = \"coated\"\nrho = 0.5",
-            &["room.toml:14:8: ", "\"coated\" is not available yet; use"],
-        ),
-        (
-            "rho = 0.5",
-            "kind = \"pane\"\ntau = 1.0",
-            &["room.toml:14:8: ", "\"pane\" is not available yet; use"],
-        ),
-        (
-            "samples = 64",
-            "estimator = \"direct\"",
-            &[
-                "room.toml:22:13: ",
-                "\"direct\" is not available yet; use \"auto\"",
-            ],
-        ),
-        (
-            "normal = [0, 0, 1]",
-            "quantity = \"radiance\"\ndirection = [0, 0, 1]",
-            &[
-                "room.toml:19:12: ",
-                "\"radiance\" is not available yet; use \"irradiance\"",
-            ],
         ),
     ]);
 }

@@ -51,6 +51,55 @@ fn check_prints_every_value_with_its_origin_and_computes_nothing() {
 }
 
 #[test]
+fn check_prints_kinds_radiances_and_cameras() {
+    let more = "\n[[shape]]\nkind = \"rectangle\"\norigin = [2, 0, 0]\nu = [0, 3, 0]\nv = [0, 0, 2]\nmaterial = \"glass\"\n\
+        [material.glass]\nkind = \"pane\"\ntau = 0.9\n\
+        [[sensor]]\nname = \"screen\"\npoints = [[1, 1, 1]]\nquantity = \"radiance\"\ndirection = [0, 0, -2]\n\
+        [[camera]]\nname = \"door\"\nposition = [0.5, 0.5, 1.6]\nlook_at = [0.5, 2, 1.6]\nfov_deg = 70\n";
+    let folder = Folder::new(format!("{ROOM}{more}").as_bytes(), &[]);
+    let text = stdout(&folder.malus(&["check", "room.toml"]));
+    for part in [
+        "kind   pane  room.toml:31:8",
+        "tau    0.9   room.toml:32:7",
+        "default: n 1.5, exitance 0, two_sided true",
+        "radiance along (0, 0, -1)",
+        "Cameras",
+        "(0.5, 0.5, 1.6)",
+        "70.00°",
+        "640 × 480",
+        "Representation linear: material \"glass\" is a pane",
+        "No defects, no warnings",
+    ] {
+        assert!(text.contains(part), "no {part:?} in:\n{text}");
+    }
+    let set = [
+        "--set",
+        "camera.door.samples=9",
+        "--set",
+        "material.glass.tau=0.8",
+    ];
+    let words = [&["check", "room.toml", "--json"], &set[..]].concat();
+    let report: serde_json::Value = serde_json::from_str(&stdout(&folder.malus(&words))).unwrap();
+    let values = &report["materials"][1]["values"];
+    assert_eq!(
+        (&values[0]["key"], &values[0]["value"]),
+        (&"kind".into(), &"pane".into())
+    );
+    assert_eq!(values[2]["origin"], "--set material.glass.tau=0.8");
+    assert_eq!(report["sensors"][1]["quantity"], "radiance");
+    assert_eq!(
+        report["sensors"][1]["direction"],
+        serde_json::json!([0.0, 0.0, -1.0])
+    );
+    let camera = &report["cameras"][0];
+    assert_eq!(
+        (&camera["name"], &camera["samples"]),
+        (&"door".into(), &9.into())
+    );
+    assert_eq!(camera["forward"], serde_json::json!([0.0, 1.0, 0.0]));
+}
+
+#[test]
 fn a_reader_that_goes_away_is_no_failure() {
     let folder = Folder::new(ROOM.as_bytes(), &[]);
     for words in [["check", "room.toml"], ["run", "room.toml"]] {

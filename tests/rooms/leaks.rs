@@ -1,7 +1,6 @@
 //! Closed rooms do not leak: no ray from inside gets out, least of all where surfaces meet.
 
 use crate::cli::Folder;
-use crate::experiment::repository;
 use glam::DVec3;
 use malus_geometry::{Mesh, Surfaces, shape};
 use malus_scene::Scene;
@@ -96,8 +95,7 @@ fn lattice(surfaces: &Surfaces, min: DVec3, max: DVec3) -> Vec<DVec3> {
 }
 
 fn office() -> Surfaces {
-    let mesh = repository("scenes/meshes/blender_office/office.glb");
-    let scene = super::with_mesh(&mesh, "");
+    let scene = super::office("office.glb");
     let folder = Folder::new(scene.as_bytes(), &[]);
     Scene::load(&folder.path("room.toml"), &[])
         .unwrap()

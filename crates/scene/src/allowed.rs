@@ -13,8 +13,12 @@ pub(crate) enum Allowed {
     Share,
     /// > 0, infinity included: a refractive index.
     Index,
+    /// Finite and ≥ 1: the refractive index of a coat.
+    Coat,
     /// More than 0, at most 180: the full angle of a cone in degrees.
     Cone,
+    /// More than 0, less than 180: the angle across a picture in degrees.
+    View,
 }
 
 impl Allowed {
@@ -26,7 +30,9 @@ impl Allowed {
             Self::NotNegative => number.is_finite() && number >= 0.0,
             Self::Share => (0.0..=1.0).contains(&number),
             Self::Index => number > 0.0,
+            Self::Coat => number.is_finite() && number >= 1.0,
             Self::Cone => number > 0.0 && number <= 180.0,
+            Self::View => number > 0.0 && number < 180.0,
         }
     }
 
@@ -38,7 +44,9 @@ impl Allowed {
             Self::NotNegative => "a number ≥ 0",
             Self::Share => "a number from 0 to 1",
             Self::Index => "a number > 0, or inf for an ideal mirror",
+            Self::Coat => "a finite number ≥ 1",
             Self::Cone => "an angle > 0 and at most 180 degrees",
+            Self::View => "an angle > 0 and < 180 degrees",
         }
     }
 }
@@ -55,7 +63,9 @@ mod tests {
             Allowed::NotNegative,
             Allowed::Share,
             Allowed::Index,
+            Allowed::Coat,
             Allowed::Cone,
+            Allowed::View,
         ] {
             assert!(!allowed.admits(f64::NAN), "{allowed:?}");
             assert_eq!(allowed.admits(f64::INFINITY), allowed == Allowed::Index);
@@ -67,6 +77,8 @@ mod tests {
         assert!(Allowed::Share.admits(0.0) && Allowed::Share.admits(1.0));
         assert!(!Allowed::Share.admits(1.0 + f64::EPSILON));
         assert!(!Allowed::Index.admits(0.0) && !Allowed::Positive.admits(0.0));
+        assert!(Allowed::Coat.admits(1.0) && !Allowed::Coat.admits(1.0 - f64::EPSILON));
+        assert!(Allowed::Cone.admits(180.0) && !Allowed::View.admits(180.0));
         assert!(Allowed::NotNegative.admits(0.0) && !Allowed::NotNegative.admits(-1e-300));
     }
 }

@@ -1,7 +1,8 @@
-//! What the fields of a mesh file's material say of ρ, a, n, k and the exitance.
+//! What the fields of a mesh file's material say of its kind, ρ, a, n, k, τ and the exitance.
 
 use malus_geometry::load::{FileMaterial, Look};
 use std::f64::consts::PI;
+use std::fmt;
 
 /// A value with the fields it comes from.
 pub(crate) type Given = (f64, &'static str);
@@ -13,14 +14,41 @@ pub(crate) struct Appearance {
     pub(crate) a: Option<Given>,
     pub(crate) n: Option<Given>,
     pub(crate) k: Option<Given>,
+    /// Fields that speak of a pane.
+    pub(crate) pane: Option<&'static str>,
+    pub(crate) tau: Option<Given>,
     pub(crate) exitance: Option<Given>,
-    /// What the model cannot follow or had to assume, in words, each with the values it concerns; it is told
-    /// where one of these is in use, or always where there is none.
-    pub(crate) doubts: Vec<(&'static [&'static str], String)>,
+    pub(crate) doubts: Vec<Doubt>,
+}
+
+/// What the model cannot follow or had to assume, in words.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Doubt {
+    /// Of the values under these keys: told where one of them is in use.
+    Value(&'static [&'static str], String),
+    /// Of light that would pass: told where the material is no pane and nobody says that this is meant.
+    Opaque(String),
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Value(_, text) | Self::Opaque(text) => f.write_str(text),
+        }
+    }
 }
 
 /// Origin of a = 0 where an MTL's illumination model knows no mirror-like reflection.
 pub(crate) const NO_MIRROR: &str = "illum < 3";
+
+/// Share of light transmitted from which on a material counts as a pane.
+const CLEAR: f64 = 0.5;
+
+/// Metallic factor from which on a material counts as a metal.
+const METAL: f64 = 0.5;
+
+/// Roughness above which a pane visibly scatters.
+const ROUGH: f64 = 0.1;
 
 /// Luminance of a linear colour, relative to white (Rec. 709 primaries).
 pub(crate) fn luminance(color: [f64; 3]) -> f64 {
@@ -65,12 +93,18 @@ impl Appearance {
             )),
             n: ior.map(|ior| (ior, "KHR_materials_ior")),
             k: None,
+            pane: None,
+            tau: None,
             exitance: Some((PI * luminance(emissive), "π × emissive factor × strength")),
             doubts: Vec::new(),
         };
         if textured {
             let text = "its base-colour texture is taken at its mean";
-            appearance.doubts.push((&["rho"], text.into()));
+            appearance.doubt(&["rho", "tau"], text.into());
+        }
+        let dark = luminance(emissive).abs() <= 0.0;
+        if transmission >= CLEAR && metallic < METAL && dark {
+            appearance.clear(transmission, roughness, reflectance);
         }
         if transmission > 0.0 {
             appearance.opaque(format!("transmits light (transmission {transmission})"));
@@ -114,12 +148,14 @@ impl Appearance {
             // Exporters write 1.0 where they know nothing.
             n: ni.filter(|ni| (ni - 1.0).abs() > 1e-6).map(|ni| (ni, "Ni")),
             k: None,
+            pane: None,
+            tau: None,
             exitance: ke.map(|ke| (PI * luminance(ke), "π × Ke")),
             doubts: Vec::new(),
         };
         if textured {
             let text = "its texture map_Kd is not read, Kd is used as it stands";
-            appearance.doubts.push((&["rho"], text.into()));
+            appearance.doubt(&["rho"], text.into());
         }
         if d.is_some_and(|d| d < 1.0) {
             appearance.opaque(format!("is transparent (d {})", d.unwrap_or(1.0)));
@@ -135,11 +171,31 @@ impl Appearance {
         appearance
     }
 
-    /// Light that would pass is lost: there is no transmission in the model.
+    fn doubt(&mut self, keys: &'static [&'static str], text: String) {
+        self.doubts.push(Doubt::Value(keys, text));
+    }
+
+    /// A material that lets most light through is a pane whose inner transmittance is its base colour's luminance.
+    fn clear(&mut self, transmission: f64, roughness: f64, luminance: f64) {
+        self.pane = Some("KHR_materials_transmission ≥ 0.5");
+        self.tau = Some((luminance, "base colour"));
+        if transmission < 1.0 {
+            let text = format!(
+                "transmits a share of {transmission} by its file: as a pane it transmits all that it neither reflects nor absorbs"
+            );
+            self.doubt(&["kind"], text);
+        }
+        if roughness > ROUGH {
+            let text = format!("is rough ({roughness}) by its file: as a pane it is clear");
+            self.doubt(&["kind"], text);
+        }
+    }
+
+    /// Light that would pass is lost: only panes let light through.
     fn opaque(&mut self, what: String) {
-        let text =
-            format!("{what}, which the model cannot follow yet: light that would pass is absorbed");
-        self.doubts.push((&[], text));
+        self.doubts.push(Doubt::Opaque(format!(
+            "{what}, which a mixture cannot follow: light that would pass is absorbed; kind = \"pane\" makes a single sheet let it through, kind = \"mixture\" says that it is meant to be opaque"
+        )));
     }
 
     /// A metal's index: of all n + ik with the `reflectance` at normal incidence, the one with n = 1,
@@ -147,7 +203,7 @@ impl Appearance {
     fn metal(&mut self, metallic: f64, reflectance: f64) {
         const ORIGIN: &str = "metallic: the base colour's luminance at normal incidence";
         let partly = if metallic < 1.0 { "partly " } else { "" };
-        if metallic >= 0.5 {
+        if metallic >= METAL {
             let (n, k) = if reflectance < 1.0 {
                 (1.0, 2.0 * (reflectance / (1.0 - reflectance)).sqrt())
             } else {
@@ -163,12 +219,12 @@ impl Appearance {
             let text = format!(
                 "is {partly}metallic: n = {n} and k = {k:.3} are guessed from its base colour's luminance {reflectance:.3}; give malus_n and malus_k{white}"
             );
-            self.doubts.push((&["n", "k"], text));
+            self.doubt(&["n", "k"], text);
         } else {
             let text = format!(
                 "is partly metallic ({metallic}): taken as that share of mirror-like reflection with a dielectric's index"
             );
-            self.doubts.push((&["a"], text));
+            self.doubt(&["a"], text);
         }
     }
 }

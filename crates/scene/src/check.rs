@@ -1,12 +1,14 @@
 //! What was understood of a scene, for `malus check`.
 
 use crate::assembly::areas;
+use crate::leaks;
 use crate::need::word;
-use crate::{Layout, Material, Scene, Sensor, Source, SourceKind, Unit};
+use crate::{
+    Camera, Layout, Material, Quantity, Scene, Sensor, SensorPoint, Source, SourceKind, Unit,
+};
 use glam::DVec3;
 use malus_geometry::Surfaces;
 use serde::Serialize;
-use std::f64::consts::TAU;
 
 /// What was understood of a scene.
 #[derive(Clone, Debug, Serialize)]
@@ -27,11 +29,14 @@ pub struct Report {
     pub emitters: Vec<EmitterReport>,
     /// Every sensor.
     pub sensors: Vec<SensorReport>,
+    /// Every camera.
+    pub cameras: Vec<CameraReport>,
     /// Representation to run with, as in scene files.
     pub representation: &'static str,
     /// Why.
     pub representation_reason: String,
-    /// Share of directions from the free sensor points, each over its hemisphere, that leave the geometry.
+    /// Share of directions from the free sensor points, or from the cameras where there are none, each over its
+    /// hemisphere, that leave the geometry, straight through panes too.
     pub escaping: f64,
     /// Surfaces that lie in one another, each pair with its area.
     pub coincidences: Vec<String>,
@@ -87,6 +92,10 @@ pub struct EmitterReport {
 pub struct SensorReport {
     /// Its name.
     pub name: String,
+    /// `irradiance` or `radiance`.
+    pub quantity: &'static str,
+    /// Unit vector of the direction that a radiance sensor looks in, where it is one for all its points.
+    pub direction: Option<[f64; 3]>,
     /// `grid`, `line` or `points`.
     pub layout: &'static str,
     /// Number of its points.
@@ -95,6 +104,27 @@ pub struct SensorReport {
     pub enclosed: usize,
     /// Box around its points, in m.
     pub bounds_m: [[f64; 3]; 2],
+}
+
+/// A camera.
+#[derive(Clone, Debug, Serialize)]
+pub struct CameraReport {
+    /// Its name.
+    pub name: String,
+    /// Where it stands, in m.
+    pub position_m: [f64; 3],
+    /// Where it looks, a unit vector.
+    pub forward: [f64; 3],
+    /// Upwards in the picture, a unit vector.
+    pub up: [f64; 3],
+    /// Angle across the picture's width in degrees.
+    pub fov_deg: f64,
+    /// Picture elements across.
+    pub width: u32,
+    /// Picture elements from top to bottom.
+    pub height: u32,
+    /// Walks a picture element.
+    pub samples: u64,
 }
 
 impl Report {
@@ -114,6 +144,7 @@ impl Report {
             emitters: emitters(scene, &materials),
             materials,
             sensors: scene.sensors.iter().map(SensorReport::of).collect(),
+            cameras: scene.cameras.iter().map(CameraReport::of).collect(),
             representation: word(chosen),
             representation_reason: if scene.settings.representation.is_some() {
                 let needed = word(needed);
@@ -121,7 +152,12 @@ impl Report {
             } else {
                 reason.clone()
             },
-            escaping: escaping(&scene.surfaces, &scene.sensors),
+            escaping: leaks::escaping(
+                &scene.surfaces,
+                &scene.materials,
+                &scene.sensors,
+                &scene.cameras,
+            ),
             coincidences: scene.coincidences.clone(),
             warnings: scene.warnings.clone(),
         }
@@ -203,6 +239,11 @@ impl SensorReport {
         let (min, max) = span(positions());
         Self {
             name: sensor.name.clone(),
+            quantity: match sensor.quantity {
+                Quantity::Irradiance => "irradiance",
+                Quantity::Radiance => "radiance",
+            },
+            direction: looked_in(sensor).map(Into::into),
             layout: match sensor.layout {
                 Layout::Grid { .. } => "grid",
                 Layout::Line => "line",
@@ -213,6 +254,28 @@ impl SensorReport {
             bounds_m: [min.into(), max.into()],
         }
     }
+}
+
+impl CameraReport {
+    fn of(camera: &Camera) -> Self {
+        Self {
+            name: camera.name.clone(),
+            position_m: camera.position.into(),
+            forward: camera.forward.into(),
+            up: camera.up.into(),
+            fov_deg: camera.fov_deg,
+            width: camera.width,
+            height: camera.height,
+            samples: camera.samples,
+        }
+    }
+}
+
+/// The one direction that all points of a radiance sensor look in.
+fn looked_in(sensor: &Sensor) -> Option<DVec3> {
+    let first = sensor.points.first()?.normal;
+    let same = |point: &SensorPoint| point.normal == first;
+    (sensor.quantity == Quantity::Radiance && sensor.points.iter().all(same)).then_some(first)
 }
 
 /// Box around all surfaces in use, in m; none without geometry.
@@ -227,36 +290,6 @@ fn span(positions: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
         (DVec3::INFINITY, DVec3::NEG_INFINITY),
         |(min, max), position| (min.min(position), max.max(position)),
     )
-}
-
-/// Share of directions from the free points that leave the geometry: 64 a point, from at most 256 points evenly picked.
-///
-/// The directions are a spiral of equal steps in height over the upper hemisphere, turned by the golden ratio.
-pub(crate) fn escaping(surfaces: &Surfaces, sensors: &[Sensor]) -> f64 {
-    const POINTS: usize = 256;
-    const DIRECTIONS: u32 = 64;
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let free = sensors.iter().flat_map(|sensor| &sensor.points);
-    let free: Vec<_> = free.filter(|point| !point.enclosed).collect();
-    let step = free.len().div_ceil(POINTS).max(1);
-    let (mut escaped, mut all) = (0_u32, 0_u32);
-    for point in free.iter().step_by(step) {
-        let from = point.position + surfaces.offset() * point.normal;
-        let (x, y) = point.normal.any_orthonormal_pair();
-        for index in 0..DIRECTIONS {
-            let height = (f64::from(index) + 0.5) / f64::from(DIRECTIONS);
-            let (sin, cos) = libm::sincos(TAU * GOLDEN * f64::from(index));
-            let reach = (1.0 - height * height).sqrt();
-            let direction = reach * (cos * x + sin * y) + height * point.normal;
-            escaped += u32::from(surfaces.escapes(from, direction));
-            all += 1;
-        }
-    }
-    if all == 0 {
-        0.0
-    } else {
-        f64::from(escaped) / f64::from(all)
-    }
 }
 
 #[cfg(test)]

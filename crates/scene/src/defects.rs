@@ -1,6 +1,5 @@
 //! What is wrong with the geometry, in words.
 
-use crate::Sensor;
 use glam::DVec3;
 use malus_geometry::defects::{Edges, ObjectDefects, Report};
 use malus_geometry::{Coincidence, Surfaces};
@@ -9,14 +8,17 @@ use std::collections::{BTreeMap, BTreeSet};
 /// How many names or places a sentence lists before it counts the rest.
 const LISTED: usize = 5;
 
-/// One sentence for each kind of defect and object, with a place to look at.
+/// One sentence for each kind of defect and object, with a place to look at; where an observer is, in m, a solid may
+/// be a room, and objects that are `sheets` have rims rightly.
 pub(crate) fn warnings(
     report: &Report,
     surfaces: &Surfaces,
     objects: &[String],
-    sensors: &[Sensor],
+    observers: &[DVec3],
+    sheets: &BTreeSet<u32>,
 ) -> Vec<String> {
-    let flush = flush(surfaces);
+    let mut rimmed = flush(surfaces);
+    rimmed.extend(sheets);
     let name = |object: u32| &objects[object as usize];
     let mut warnings = Vec::new();
     for found in &report.objects {
@@ -42,15 +44,14 @@ pub(crate) fn warnings(
             tell(edges.count, &format!("{what}, {}", longest(edges)));
         }
     }
-    let sheets = report
+    let others = report
         .objects
         .iter()
-        .filter(|found| !flush.contains(&found.object));
-    warnings.extend(boundary(&sheets.collect::<Vec<_>>(), objects));
+        .filter(|found| !rimmed.contains(&found.object));
+    warnings.extend(boundary(&others.collect::<Vec<_>>(), objects));
     for solid in &report.inside_out {
         let holds = |point: DVec3| point.cmpge(solid.min).all() && point.cmple(solid.max).all();
-        let mut points = sensors.iter().flat_map(|sensor| &sensor.points);
-        if !points.any(|point| holds(point.position)) {
+        if !observers.iter().any(|point| holds(*point)) {
             warnings.push(format!(
                 "object {:?} is inside out: its normals point into its {:.4} m³ near {}",
                 name(solid.object),
@@ -74,7 +75,7 @@ pub(crate) fn warnings(
     let holes: Vec<_> = report
         .holes
         .iter()
-        .filter(|hole| !hole.objects.iter().all(|object| flush.contains(object)))
+        .filter(|hole| !hole.objects.iter().all(|object| rimmed.contains(object)))
         .collect();
     for hole in holes.iter().take(LISTED) {
         let names: Vec<String> = hole.objects.iter().map(|it| name(*it).clone()).collect();
@@ -180,10 +181,17 @@ mod tests {
     use super::*;
     use malus_geometry::{Mesh, defects, shape};
 
-    fn told(mesh: &Mesh, sensors: &[Sensor]) -> String {
+    fn told(mesh: &Mesh, observers: &[DVec3]) -> String {
         let objects = ["Room".to_owned(), "Fin".to_owned()];
         let surfaces = Surfaces::new(mesh.clone()).unwrap();
-        warnings(&defects::of(mesh), &surfaces, &objects, sensors).join("\n")
+        warnings(
+            &defects::of(mesh),
+            &surfaces,
+            &objects,
+            observers,
+            &BTreeSet::new(),
+        )
+        .join("\n")
     }
 
     fn room(inward: bool) -> Mesh {

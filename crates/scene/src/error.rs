@@ -79,16 +79,6 @@ pub enum Error {
         /// The contradiction.
         reason: String,
     },
-    /// Something that the scene format has and this version does not.
-    #[error("{at}: {what} is not available yet; {instead}")]
-    NotAvailable {
-        /// Place of the value.
-        at: String,
-        /// What was asked for.
-        what: String,
-        /// What to do instead.
-        instead: String,
-    },
     /// A mesh file that cannot be loaded.
     #[error("{at}: {reason}")]
     Mesh {
@@ -107,9 +97,23 @@ pub enum Error {
         /// The file as looked for.
         file: String,
     },
+    /// A pane where only a single sheet can be one.
+    #[error(
+        "{at}material {material:?} is a pane ({origin}) and makes up closed solids: {objects}; a pane is a whole sheet with both its faces, so a closed solid of it counts every wall twice: replace it by a single sheet, or add to the scene file\n\n    [material.{material:?}]\n    kind = \"mixture\"\n\nwhich is opaque (for one object alone: its custom property malus_kind); normals that point inward mean a room, whose walls are single sheets"
+    )]
+    PaneSolid {
+        /// Place of the kind in the scene file with a colon, empty where it comes from elsewhere.
+        at: String,
+        /// Names of the solids' objects.
+        objects: String,
+        /// The material.
+        material: String,
+        /// Where its kind comes from.
+        origin: String,
+    },
     /// A closed room without loss.
     #[error(
-        "{path}: nothing absorbs light and none leaves: every surface reflects all of it ({materials}), so the illuminance grows without bound; give some material rho below 1"
+        "{path}: nothing absorbs light and none leaves: every surface reflects or lets through all of it ({materials}), so the illuminance grows without bound; give some material rho below 1"
     )]
     NoLoss {
         /// The scene file.
@@ -183,9 +187,9 @@ pub enum Error {
         /// The scene file.
         path: String,
     },
-    /// A scene without sensors.
+    /// A scene with neither sensors nor cameras.
     #[error(
-        "{path}: there is no sensor; add to the scene file\n\n    [[sensor]]\n    name = \"desk\"\n    grid = {{ origin = [0, 0, 0.75], u = [4, 0, 0], v = [0, 3, 0], counts = [9, 9] }}\n    normal = [0, 0, 1]\n\nor name an Empty SENSOR_… in the mesh file"
+        "{path}: there is no sensor and no camera; add to the scene file\n\n    [[sensor]]\n    name = \"desk\"\n    grid = {{ origin = [0, 0, 0.75], u = [4, 0, 0], v = [0, 3, 0], counts = [9, 9] }}\n    normal = [0, 0, 1]\n\nor name an Empty SENSOR_… in the mesh file"
     )]
     NoSensor {
         /// The scene file.

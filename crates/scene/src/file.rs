@@ -2,6 +2,7 @@
 
 use crate::Unit;
 use crate::allowed::Allowed;
+use crate::camera::Camera;
 use crate::document::Node;
 use crate::error::Error;
 use crate::material::library::Library;
@@ -25,6 +26,7 @@ pub(crate) struct SceneFile {
     pub(crate) library: Library,
     pub(crate) sources: Vec<Source>,
     pub(crate) sensors: Vec<Described>,
+    pub(crate) cameras: Vec<Located<Camera>>,
     pub(crate) settings: Settings,
 }
 
@@ -60,6 +62,7 @@ impl SceneFile {
         let materials = table.take("material");
         let sources = table.take("source");
         let sensors = table.take("sensor");
+        let cameras = table.take("camera");
         let run = table.take("run");
         table.finish()?;
 
@@ -73,6 +76,7 @@ impl SceneFile {
             library: Library::read(materials)?,
             sources: each(sources, "source", Source::read)?,
             sensors: each(sensors, "sensor", |_, field| Described::read(field, folder))?,
+            cameras: each(cameras, "camera", |_, field| Camera::read(field))?,
             settings: Settings::read(run)?,
         })
     }

@@ -1,5 +1,6 @@
 //! What a surface does to light, and where each value of it comes from.
 
+pub(crate) mod kind;
 pub(crate) mod library;
 pub(crate) mod resolve;
 

@@ -30,13 +30,20 @@ impl Need {
         }
         for material in materials {
             let name = &material.name;
-            let why = match material.optics.representation() {
-                Representation::Full => "turns linear into circular polarisation (k > 0 or n < 1)",
+            let representation = material.optics.representation();
+            let why = match (material.optics, representation) {
+                (malus_optics::Material::Coated(_), _) => {
+                    "polarises light by its coat, in reflecting and in scattering"
+                }
+                (malus_optics::Material::Pane { .. }, Representation::Linear) => {
+                    "is a pane and polarises light that it reflects and lets through"
+                }
+                (_, Representation::Full) => {
+                    "turns linear into circular polarisation (k > 0 or n < 1)"
+                }
                 _ => "polarises light by mirror-like reflection (a > 0)",
             };
-            need.raise(material.optics.representation(), || {
-                format!("material {name:?} {why}")
-            });
+            need.raise(representation, || format!("material {name:?} {why}"));
             if let Some(emission) = &material.emission {
                 let state = emission.state;
                 need.raise(Representation::of_state(state), || {

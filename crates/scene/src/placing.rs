@@ -2,6 +2,7 @@
 
 use crate::Sensor;
 use crate::assembly::ObjectIndex;
+use crate::camera::Camera;
 use crate::error::Error;
 use crate::import::{Import, Role};
 use crate::material::library::is_glob;
@@ -77,14 +78,16 @@ fn objects(pattern: &Located<String>, imports: &[Import]) -> Result<Vec<ObjectIn
     Ok(hits)
 }
 
-/// All sensors: those of the scene file, then the marked objects of mesh files that none of those lies on.
+/// All sensors: those of the scene file, then the marked objects of mesh files that none of those lies on; `cameras`
+/// have names of their own beside them.
 pub(crate) fn place(
     described: Vec<Described>,
+    cameras: &[Located<Camera>],
     imports: &[Import],
     measured: &Measured,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Sensor>, Error> {
-    check_names(&described, imports, measured)?;
+    check_names(&described, cameras, imports, measured)?;
     let mut sensors = Vec::new();
     let mut errors = Vec::new();
     for (described, objects) in described.into_iter().zip(&measured.0) {
@@ -107,7 +110,9 @@ pub(crate) fn place(
             Err(error) => errors.push(error),
         }
     }
-    let mut taken: BTreeSet<String> = sensors.iter().map(|sensor| folded(&sensor.name)).collect();
+    let names = sensors.iter().map(|sensor| folded(&sensor.name));
+    let cameras = cameras.iter().map(|camera| folded(&camera.value.name));
+    let mut taken: BTreeSet<String> = names.chain(cameras).collect();
     for (file, index) in marked(imports, &measured.objects()) {
         let (import, object) = (&imports[file], &imports[file].model.objects[index]);
         let Role::Sensor(marker) = import.role(index) else {
@@ -140,9 +145,10 @@ fn marked(imports: &[Import], measured: &BTreeSet<ObjectIndex>) -> Vec<ObjectInd
     marked
 }
 
-/// Names must differ even where upper and lower case are one, since they name files.
+/// Names of sensors and cameras must differ even where upper and lower case are one, since they name files.
 fn check_names(
     described: &[Described],
+    cameras: &[Located<Camera>],
     imports: &[Import],
     measured: &Measured,
 ) -> Result<(), Error> {
@@ -152,15 +158,25 @@ fn check_names(
         .collect();
     let mut taken = BTreeSet::new();
     let mut errors = Vec::new();
-    for sensor in described {
+    let sensors = described.iter().map(|sensor| {
         let Located { value, at } = &sensor.name;
+        ("sensor", value.as_str(), at)
+    });
+    let cameras = cameras
+        .iter()
+        .map(|camera| ("camera", camera.value.name.as_str(), &camera.at));
+    for (what, value, at) in sensors.chain(cameras) {
         let reason = if !taken.insert(folded(value)) {
             format!(
-                "the sensor name {value:?} is used twice (upper and lower case count as one); names must differ"
+                "the {what} name {value:?} is used twice (upper and lower case count as one, sensors and cameras too); names must differ"
             )
         } else if marked.contains(&folded(value)) {
+            let instead = match what {
+                "sensor" => format!(", or mesh = {value:?} to take its place"),
+                _ => String::new(),
+            };
             format!(
-                "the sensor name {value:?} is that of an object in a mesh file, which is a sensor already; give another name, or mesh = {value:?} to take its place"
+                "the {what} name {value:?} is that of an object in a mesh file, which is a sensor already; give another name{instead}"
             )
         } else {
             continue;

@@ -2,6 +2,7 @@
 
 use crate::allowed::Allowed;
 use crate::error::Error;
+use crate::material::kind::Kind;
 use crate::nearest::hint;
 use crate::polarisation;
 use malus_geometry::load::Properties;
@@ -35,10 +36,12 @@ pub(crate) enum Emitted {
 /// The custom properties of one holder, checked.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Custom {
+    pub(crate) kind: Option<Kind>,
     pub(crate) rho: Option<f64>,
     pub(crate) a: Option<f64>,
     pub(crate) n: Option<f64>,
     pub(crate) k: Option<f64>,
+    pub(crate) tau: Option<f64>,
     pub(crate) emitted: Option<Emitted>,
     pub(crate) state: Option<[f64; 4]>,
     pub(crate) sensor: Option<Marker>,
@@ -48,13 +51,15 @@ pub(crate) struct Custom {
 }
 
 /// Every key with the holders that may have it.
-const KEYS: [(&str, &[Holder]); 11] = {
+const KEYS: [(&str, &[Holder]); 13] = {
     use Holder::{Lamp, Material, Object};
     [
+        ("malus_kind", &[Material, Object]),
         ("malus_rho", &[Material, Object]),
         ("malus_a", &[Material, Object]),
         ("malus_n", &[Material, Object]),
         ("malus_k", &[Material, Object]),
+        ("malus_tau", &[Material, Object]),
         ("malus_exitance", &[Material, Object]),
         ("malus_emit_lm", &[Material, Object]),
         ("malus_polarisation", &[Material, Object, Lamp]),
@@ -106,8 +111,11 @@ impl Custom {
 
     /// Whether any property of a material is among them.
     pub(crate) fn is_material(&self) -> bool {
-        let numbers = [self.rho, self.a, self.n, self.k];
-        numbers.iter().any(Option::is_some) || self.emitted.is_some() || self.state.is_some()
+        let numbers = [self.rho, self.a, self.n, self.k, self.tau];
+        numbers.iter().any(Option::is_some)
+            || self.kind.is_some()
+            || self.emitted.is_some()
+            || self.state.is_some()
     }
 
     fn set(&mut self, holder: Holder, key: &str, value: &Value) -> Result<(), (String, String)> {
@@ -126,10 +134,12 @@ impl Custom {
         }
         let number = |allowed: Allowed| number(value, allowed).map_err(plain);
         match key {
+            "malus_kind" => self.kind = Some(kind(value)?),
             "malus_rho" => self.rho = Some(number(Allowed::Share)?),
             "malus_a" => self.a = Some(number(Allowed::Share)?),
             "malus_n" => self.n = Some(number(Allowed::Index)?),
             "malus_k" => self.k = Some(number(Allowed::NotNegative)?),
+            "malus_tau" => self.tau = Some(number(Allowed::Share)?),
             "malus_exitance" => {
                 self.emitted = Some(Emitted::Exitance(number(Allowed::NotNegative)?));
             }
@@ -188,15 +198,31 @@ fn flag(value: &Value) -> Result<bool, String> {
 }
 
 fn marker(value: &Value) -> Result<Marker, (String, String)> {
-    match value.as_str() {
-        Some("grid") => Ok(Marker::Grid),
-        Some("point") => Ok(Marker::Point),
-        Some("mesh") => Ok(Marker::Mesh),
-        other => Err((
-            refused(value, "\"grid\", \"point\" or \"mesh\""),
-            other.map_or_else(String::new, |word| hint(word, ["grid", "point", "mesh"])),
-        )),
-    }
+    let choices = [
+        ("grid", Marker::Grid),
+        ("point", Marker::Point),
+        ("mesh", Marker::Mesh),
+    ];
+    choice(value, choices, "\"grid\", \"point\" or \"mesh\"")
+}
+
+fn kind(value: &Value) -> Result<Kind, (String, String)> {
+    choice(value, Kind::CHOICES, "\"mixture\", \"coated\" or \"pane\"")
+}
+
+/// One of three words.
+fn choice<T: Copy>(
+    value: &Value,
+    choices: [(&str, T); 3],
+    allowed: &str,
+) -> Result<T, (String, String)> {
+    let found = value.as_str();
+    let chosen = choices.iter().find(|(word, _)| found == Some(*word));
+    chosen.map(|(_, choice)| *choice).ok_or_else(|| {
+        let words = choices.map(|(word, _)| word);
+        let nearest = found.map_or_else(String::new, |found| hint(found, words));
+        (refused(value, allowed), nearest)
+    })
 }
 
 fn state(value: &Value) -> Result<[f64; 4], (String, String)> {
@@ -282,6 +308,9 @@ mod tests {
                 "true or false, found \"yes\"",
             ),
             (json!({"malus_sensor": "gird"}), "the nearest is \"grid\""),
+            (json!({"malus_kind": "pain"}), "the nearest is \"pane\""),
+            (json!({"malus_kind": 1}), "\"coated\" or \"pane\", found 1"),
+            (json!({"malus_tau": 1.1}), "from 0 to 1, found 1.1"),
             (
                 json!({"malus_polarisation": [1, 0.9, 0.9, 0]}),
                 "q² + u² + v² ≤ 1",

@@ -8,7 +8,10 @@ use crate::import::Import;
 use crate::need::{Need, word};
 use crate::overrides::Override;
 use crate::placing::{measured, place};
-use crate::{Material, Origin, Sensor, Settings, Source, Unit, defects, enclosed};
+use crate::{
+    Camera, Material, Origin, Sensor, Settings, Source, Unit, defects, enclosed, leaks, panes,
+};
+use glam::DVec3;
 use malus_geometry::Surfaces;
 use malus_optics::Representation;
 use std::collections::BTreeSet;
@@ -26,8 +29,10 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Sources without geometry: those of the scene file, then lamps of mesh files.
     pub sources: Vec<Source>,
-    /// Sensors, in the order of the scene file, then those found in mesh files.
+    /// Sensors, in the order of the scene file, then those found in mesh files; none only where there are cameras.
     pub sensors: Vec<Sensor>,
+    /// Cameras, in the order of the scene file.
+    pub cameras: Vec<Camera>,
     /// How the scene is to be computed.
     pub settings: Settings,
     /// Number of Stokes components that the scene needs, and what forces it.
@@ -72,6 +77,7 @@ impl Scene {
         })?;
         let (materials, doubts) = assembly.materials(&imports, &file.library, &surfaces)?;
         warnings.extend(doubts);
+        panes::check(&surfaces, &materials, &assembly.objects, &file.library)?;
         warnings.extend(no_mirrors(&materials));
 
         let mut sources = file.sources;
@@ -86,19 +92,24 @@ impl Scene {
         }
         warnings.extend(mixed_units(&imports, &materials));
 
-        let mut sensors = place(file.sensors, &imports, &measured, &mut warnings)?;
-        if sensors.is_empty() {
+        let (sensors, cameras) = (file.sensors, file.cameras);
+        let mut sensors = place(sensors, &cameras, &imports, &measured, &mut warnings)?;
+        let cameras: Vec<Camera> = cameras.into_iter().map(|camera| camera.value).collect();
+        if sensors.is_empty() && cameras.is_empty() {
             let path = path.display().to_string();
             return Err(Error::NoSensor { path });
         }
-        enclosed::mark(&mut sensors, &surfaces, &materials, &sources);
+        let darkness = enclosed::Darkness::of(&surfaces, &materials, &sources);
+        darkness.mark(&mut sensors);
+        warnings.extend(darkness.warnings(&cameras, &sensors, &assembly.objects));
 
-        without_loss(path, &surfaces, &materials, &sensors)?;
+        without_loss(path, &surfaces, &materials, &sensors, &cameras)?;
         warnings.extend(defects::warnings(
             &flaws,
             &surfaces,
             &assembly.objects,
-            &sensors,
+            &observers(&sensors, &cameras),
+            &panes::sheets(&surfaces, &materials),
         ));
         let labels: Vec<String> = materials.iter().map(|it| it.name.clone()).collect();
         let coincidences = defects::coincidences(&surfaces, &assembly.objects, &labels);
@@ -112,6 +123,7 @@ impl Scene {
             materials,
             sources,
             sensors,
+            cameras,
             settings: file.settings,
             need,
             objects: assembly.objects,
@@ -141,17 +153,30 @@ fn each<I, T>(items: &[I], read: impl Fn(&I) -> Result<T, Error>) -> Result<Vec<
     Error::all(errors).map(|()| good)
 }
 
+/// Where light is measured or seen, in m.
+fn observers(sensors: &[Sensor], cameras: &[Camera]) -> Vec<DVec3> {
+    let points = sensors.iter().flat_map(|sensor| &sensor.points);
+    let eyes = cameras.iter().map(|camera| camera.position);
+    points.map(|point| point.position).chain(eyes).collect()
+}
+
 /// Refuses a closed scene in which light is never lost: there is no steady state to compute.
+///
+/// A pane that absorbs nothing loses light only where what it lets through leaves.
 fn without_loss(
     path: &Path,
     surfaces: &Surfaces,
     materials: &[Material],
     sensors: &[Sensor],
+    cameras: &[Camera],
 ) -> Result<(), Error> {
-    let lossless = |material: &Material| material.two_sided && material.optics.is_lossless();
+    let lossless = |material: &Material| match material.optics {
+        malus_optics::Material::Pane { tau, .. } => tau >= 1.0,
+        optics => material.two_sided && optics.is_lossless(),
+    };
     if surfaces.is_empty()
         || !materials.iter().all(lossless)
-        || crate::check::escaping(surfaces, sensors) > 0.0
+        || leaks::any(surfaces, materials, sensors, cameras)
     {
         return Ok(());
     }
@@ -227,7 +252,7 @@ fn odd_extent(surfaces: &Surfaces) -> Option<String> {
 }
 
 /// Size of the box around all surfaces, in m.
-fn extent(surfaces: &Surfaces) -> Option<glam::DVec3> {
+fn extent(surfaces: &Surfaces) -> Option<DVec3> {
     let bounds = crate::check::bounds(surfaces)?;
     Some(bounds.1 - bounds.0)
 }

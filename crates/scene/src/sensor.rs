@@ -1,5 +1,6 @@
 //! Where light is measured: points with normals, in named groups.
 
+mod aim;
 pub(crate) mod described;
 pub(crate) mod faces;
 mod lattice;
@@ -16,7 +17,7 @@ pub struct Sensor {
     pub name: String,
     /// What is measured.
     pub quantity: Quantity,
-    /// Which x axis the Stokes vector belongs to.
+    /// Which x axis the Stokes vector belongs to; [`Frame::Fixed`] for a radiance.
     pub frame: Frame,
     /// x axis of [`Frame::Fixed`], and of [`Frame::Incidence`] for a beam along the normal: a unit vector, to be
     /// made perpendicular to each arriving direction.
@@ -32,7 +33,7 @@ pub struct Sensor {
 pub struct SensorPoint {
     /// Position in metres, as given: a point on a surface is not moved off it.
     pub position: DVec3,
-    /// Normal, a unit vector; light is measured on its side.
+    /// Normal, a unit vector; light is measured on its side. For a radiance the direction looked in.
     pub normal: DVec3,
     /// Inside a closed solid without an emitter: reported, but no part of means and of stopping.
     pub enclosed: bool,
@@ -43,11 +44,11 @@ pub struct SensorPoint {
 pub enum Quantity {
     /// Irradiance, in unit/m².
     Irradiance,
-    /// Radiance along one direction, in unit/(m²·sr); refused until it exists.
+    /// Radiance of the light that arrives from one direction, in unit/(m²·sr).
     Radiance,
 }
 
-/// Which x axis the Stokes vector of an irradiance belongs to (`docs/conventions.md`).
+/// Which x axis the Stokes vector belongs to (`docs/conventions.md`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frame {
     /// Each beam's own, along d × N.

@@ -2,6 +2,7 @@
 
 use crate::allowed::Allowed;
 use crate::error::Error;
+use crate::place::Place;
 use crate::reader::{Field, Reader};
 use malus_optics::Representation;
 
@@ -25,7 +26,7 @@ pub enum Estimator {
     Local,
     /// Walks from the sensors, every vertex joined to the sources.
     Gather,
-    /// Counting hits in rings about the sensors; refused until it exists.
+    /// Walks from the sources, hits counted in the cells that they fall into.
     Direct,
 }
 
@@ -44,6 +45,8 @@ pub struct Settings {
     pub representation: Option<Representation>,
     /// How walks are joined to the sensors.
     pub estimator: Estimator,
+    /// Side of the cells in metres, > 0: given with [`Estimator::Direct`] and with no other.
+    pub cell: Option<f64>,
     /// Number of walks, > 0.
     pub samples: Option<u64>,
     /// Standard error of S0 as a share of S0 at which the run stops, > 0.
@@ -63,6 +66,7 @@ impl Settings {
             compare_diffuse: false,
             representation: None,
             estimator: Estimator::Auto,
+            cell: None,
             samples: None,
             relative_error: None,
             seconds: None,
@@ -97,21 +101,17 @@ impl Settings {
                 ("full", Some(Representation::Full)),
             ])?;
         }
-        if let Some(field) = table.take("estimator") {
+        let estimator = table.take("estimator");
+        if let Some(field) = &estimator {
             self.estimator = field.choice(&[
                 ("auto", Estimator::Auto),
                 ("local", Estimator::Local),
                 ("gather", Estimator::Gather),
                 ("direct", Estimator::Direct),
             ])?;
-            if self.estimator == Estimator::Direct {
-                return Err(Error::NotAvailable {
-                    at: field.at().to_string(),
-                    what: "the estimator \"direct\"".into(),
-                    instead: "use \"auto\", \"local\" or \"gather\"".into(),
-                });
-            }
         }
+        let typed = estimator.is_some_and(|field| matches!(field.at(), Place::Override(_)));
+        self.cell = cell(&mut table, self.estimator, typed)?;
         if let Some(field) = table.take("samples") {
             self.samples = Some(field.whole(1, u64::MAX)?);
         }
@@ -138,6 +138,25 @@ impl Settings {
             }
         }
         Ok(())
+    }
+}
+
+/// Takes the size of the cells, which goes with [`Estimator::Direct`] and with no other.
+///
+/// Where another estimator is `typed` on the command line in place of the file's, the file's cells are passed over.
+fn cell(table: &mut Reader, estimator: Estimator, typed: bool) -> Result<Option<f64>, Error> {
+    if estimator == Estimator::Direct {
+        let expected = "the side in m of the cells that estimator = \"direct\" counts hits in";
+        let field = table.require("cell", expected)?;
+        return field.number(Allowed::Positive).map(Some);
+    }
+    match table.take("cell") {
+        None => Ok(None),
+        Some(field) if typed && matches!(field.at(), Place::File { .. }) => Ok(None),
+        Some(field) => Err(Error::Conflict {
+            at: field.at().to_string(),
+            reason: "cell goes with estimator = \"direct\", the others count no hits".into(),
+        }),
     }
 }
 
@@ -175,10 +194,62 @@ mod tests {
     }
 
     #[test]
-    fn ring_counting_is_refused_until_it_exists() {
-        let error = read("estimator = \"direct\"").unwrap_err();
-        assert!(error.starts_with("room.toml:1:13: "), "{error}");
-        assert!(error.contains("not available yet"), "{error}");
+    fn counting_hits_needs_the_size_of_its_cells_and_nothing_else_does() {
+        let settings = read("estimator = \"direct\"\ncell = 0.05").unwrap();
+        assert_eq!(settings.estimator, Estimator::Direct);
+        assert_eq!(settings.cell, Some(0.05));
+        assert_eq!(read("").unwrap().cell, None);
+        for (text, place, expected) in [
+            (
+                "estimator = \"direct\"",
+                "1:1",
+                "[run] lacks the key \"cell\": the side in m",
+            ),
+            (
+                "estimator = \"direct\"\ncell = 0",
+                "2:8",
+                "cell must be a number > 0, found 0",
+            ),
+            (
+                "estimator = \"direct\"\ncel = 0.1",
+                "2:1",
+                "the nearest is \"cell\"",
+            ),
+            ("cell = 0.1", "1:8", "cell goes with estimator = \"direct\""),
+            (
+                "estimator = \"gather\"\ncell = 0.1",
+                "2:8",
+                "cell goes with estimator = \"direct\"",
+            ),
+        ] {
+            let error = read(text).unwrap_err();
+            assert!(
+                error.starts_with(&format!("room.toml:{place}: ")),
+                "{error}"
+            );
+            assert!(error.contains(expected), "{error}");
+        }
+    }
+
+    #[test]
+    fn another_estimator_on_the_command_line_passes_over_the_cells_of_the_file() {
+        let text = "[run]\nestimator = \"direct\"\ncell = 0.1";
+        let read = |entries: &[(&str, &str)]| {
+            let mut document = Node::document(&"room.toml".into(), text).unwrap();
+            for (key, value) in entries {
+                let (key, value) = ((*key).into(), (*value).into());
+                let entry = crate::Override { key, value };
+                entry.apply(&mut document).unwrap();
+            }
+            let mut table = Reader::new("the scene file".into(), document).unwrap();
+            Settings::read(table.take("run")).map_err(|error| error.to_string())
+        };
+        assert_eq!(read(&[]).unwrap().cell, Some(0.1));
+        assert_eq!(read(&[("run.cell", "0.2")]).unwrap().cell, Some(0.2));
+        let gather = ("run.estimator", "gather");
+        assert_eq!(read(&[gather]).unwrap().cell, None);
+        let error = read(&[gather, ("run.cell", "0.2")]).unwrap_err();
+        assert!(error.starts_with("--set run.cell=0.2: "), "{error}");
     }
 
     #[test]

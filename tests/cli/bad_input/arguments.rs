@@ -47,7 +47,7 @@ fn an_option_is_judged_like_the_file_and_told_as_typed() {
         ("--relative-error", "nan", "a number > 0, found NaN"),
         ("--seed", "-3", "a whole number ≥ 0, found -3"),
         ("--model", "polarized", "nearest is \"polarised\""),
-        ("--estimator", "direct", "not available yet; use \"auto\""),
+        ("--estimator", "dirct", "nearest is \"direct\""),
         (
             "--representation",
             "stokes",
@@ -60,6 +60,13 @@ fn an_option_is_judged_like_the_file_and_told_as_typed() {
         let told = refusal(ROOM.as_bytes(), &[], &[option, value]);
         assert_told(&told, &[&format!("error: {option} {value}: "), allowed]);
     }
+    let told = refusal(ROOM.as_bytes(), &[], &["--estimator", "direct"]);
+    assert_told(&told, &["room.toml:21:1: [run] lacks the key \"cell\""]);
+    let told = refusal(ROOM.as_bytes(), &[], &["--set", "run.cell=0.1"]);
+    assert_told(
+        &told,
+        &["error: --set run.cell=0.1: cell goes with estimator = \"direct\""],
+    );
     let told = refusal(ROOM.as_bytes(), &[], &["--sample", "64"]);
     assert_told(&told, &["'--sample'", "'--samples'"]);
 }

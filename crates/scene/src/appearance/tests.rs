@@ -68,14 +68,18 @@ fn a_metal_has_its_colour_at_normal_incidence() {
     let (n, k) = (appearance.n.unwrap().0, appearance.k.unwrap().0);
     let reflectance = ((n - 1.0).powi(2) + k * k) / ((n + 1.0).powi(2) + k * k);
     assert!((reflectance - 0.57).abs() < 1e-12);
-    assert!(appearance.doubts[0].1.contains("malus_n"));
+    assert!(appearance.doubts[0].to_string().contains("malus_n"));
 }
 
 #[test]
 fn a_white_metal_is_an_ideal_mirror_and_suspected() {
     let appearance = look(gltf(1.0, 1.0, 0.0, 0.0));
     assert!(appearance.n.unwrap().0.is_infinite());
-    assert!(appearance.doubts[0].1.contains("Diffuse and Glass"));
+    assert!(
+        appearance.doubts[0]
+            .to_string()
+            .contains("Diffuse and Glass")
+    );
 }
 
 #[test]
@@ -87,10 +91,39 @@ fn what_is_half_metal_keeps_half_its_diffuse_part() {
 }
 
 #[test]
-fn glass_reflects_nothing_diffusely_and_is_doubted() {
-    let appearance = look(gltf(1.0, 0.0, 0.0, 1.0));
-    assert!(near(appearance.rho, 0.0) && near(appearance.a, 1.0));
-    assert!(appearance.doubts[0].1.contains("cannot follow"));
+fn glass_is_a_pane_and_as_a_mixture_reflects_nothing_diffusely() {
+    let clear = look(gltf(0.9, 0.0, 0.0, 1.0));
+    assert_eq!(clear.pane, Some("KHR_materials_transmission ≥ 0.5"));
+    assert!(near(clear.tau, 0.9) && clear.n.is_none());
+    assert!(near(clear.rho, 0.0) && near(clear.a, 1.0));
+    assert!(matches!(&clear.doubts[..], [Doubt::Opaque(text)] if text.contains("kind = \"pane\"")));
+}
+
+#[test]
+fn what_transmits_little_shines_or_is_metal_is_no_pane() {
+    let is_pane = |it: Look| look(it).pane.is_some();
+    assert!(is_pane(gltf(1.0, 0.0, 0.0, 0.5)) && !is_pane(gltf(1.0, 0.0, 0.0, 0.49)));
+    assert!(is_pane(gltf(1.0, 0.49, 0.0, 1.0)) && !is_pane(gltf(1.0, 0.5, 0.0, 1.0)));
+    let mut glowing = gltf(1.0, 0.0, 0.0, 1.0);
+    if let Look::Gltf { emissive, .. } = &mut glowing {
+        *emissive = [1.0; 3];
+    }
+    assert!(!is_pane(glowing));
+}
+
+#[test]
+fn what_a_pane_cannot_have_of_its_file_is_doubted() {
+    let doubts = |roughness, transmission| {
+        let doubts = look(gltf(1.0, 0.0, roughness, transmission)).doubts;
+        let of_kind = doubts.into_iter().filter_map(|doubt| match doubt {
+            Doubt::Value(["kind"], text) => Some(text),
+            _ => None,
+        });
+        of_kind.collect::<Vec<_>>().join(" ")
+    };
+    assert!(doubts(0.0, 0.75).contains("a share of 0.75"));
+    assert!(doubts(0.3, 1.0).contains("is rough (0.3)"));
+    assert_eq!(doubts(0.1, 1.0), "");
 }
 
 #[test]

@@ -111,7 +111,7 @@ fn objects_share_a_surface_unless_their_own_properties_differ() {
     assert_eq!(surfaces, [0, 0, 1]);
     assert_eq!(built.materials[0].object, None);
     assert_eq!(built.materials[1].object.as_deref(), Some("C"));
-    assert_eq!(built.materials[1].values[0].value, "0.1");
+    assert_eq!(built.materials[1].values[1].value, "0.1");
 }
 
 #[test]
@@ -186,8 +186,22 @@ fn faces_without_a_material_take_all_from_their_object() {
     assert_eq!(
         (
             built.materials[0].name.as_str(),
-            built.materials[0].values[0].value.as_str()
+            built.materials[0].values[1].value.as_str()
         ),
         (NAMELESS, "0.3")
     );
+}
+
+#[test]
+fn an_object_may_be_of_another_kind_than_its_material() {
+    let own = object("B", DVec3::Y, json!({"malus_kind": "coated"}), &[Some(0)]);
+    let plain = object("A", DVec3::X, json!({}), &[Some(0)]);
+    let built = build(vec![material("Wall", json!({}), 0.0)], vec![plain, own], "");
+    let kinds: Vec<(&str, String)> = built
+        .materials
+        .iter()
+        .map(|it| (it.values[0].value.as_str(), it.values[0].origin.to_string()))
+        .collect();
+    assert_eq!(kinds[0], ("mixture", "default".into()));
+    assert_eq!(kinds[1], ("coated", "malus_kind of object \"B\"".into()));
 }

@@ -33,10 +33,10 @@ fn materials_are_told_with_their_area_and_origins() {
         plaster.exposed_m2
     );
     assert!(
-        lamp.values[0].origin.starts_with("\"l*\" at ")
-            && lamp.values[0].origin.contains("room.toml:16:7")
+        lamp.values[1].origin.starts_with("\"l*\" at ")
+            && lamp.values[1].origin.contains("room.toml:16:7")
     );
-    assert_eq!(lamp.values[1].origin, "default");
+    assert_eq!(lamp.values[2].origin, "default");
 }
 
 #[test]
@@ -75,5 +75,39 @@ fn a_representation_asked_for_is_told_with_the_need() {
         report
             .representation_reason
             .contains("asked for; the scene needs \"intensity\"")
+    );
+}
+
+#[test]
+fn cameras_and_radiances_are_told_with_where_they_look() {
+    let plain = report("run.seed", "1");
+    assert_eq!(
+        (plain.sensors[0].quantity, plain.sensors[0].direction),
+        ("irradiance", None)
+    );
+    assert!(plain.cameras.is_empty());
+    let sensor = "[{ name = 'up', points = [[1, 1, 1], [2, 2, 1]], quantity = 'radiance', direction = [0, 0, 2] }]";
+    let up = &report("sensor", sensor).sensors[0];
+    assert_eq!(
+        (up.quantity, up.direction),
+        ("radiance", Some([0.0, 0.0, 1.0]))
+    );
+    let camera = "[{ name = 'eye', position = [1, 1, 1], look_at = [1, 2, 1], width = 32 }]";
+    let report = report("camera", camera);
+    let eye = &report.cameras[0];
+    assert_eq!(
+        (eye.name.as_str(), eye.position_m, eye.forward),
+        ("eye", [1.0; 3], [0.0, 1.0, 0.0])
+    );
+    assert_eq!((eye.width, eye.height, eye.samples), (32, 480, 64));
+}
+
+#[test]
+fn the_kind_is_told_with_its_origin() {
+    let report = report("material.plaster.kind", "coated");
+    let kind = &report.materials[0].values[0];
+    assert_eq!(
+        (kind.key, kind.value.as_str(), kind.origin.as_str()),
+        ("kind", "coated", "--set material.plaster.kind=coated")
     );
 }

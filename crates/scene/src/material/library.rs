@@ -1,6 +1,7 @@
 //! The materials of the scene file: which of them give a value to a name.
 
 use super::Origin;
+use super::kind::Kind;
 use crate::allowed::Allowed;
 use crate::error::Error;
 use crate::nearest::hint;
@@ -13,10 +14,12 @@ use globset::{Glob, GlobMatcher};
 /// Values as written under one name; each may be missing.
 #[derive(Debug, Default)]
 pub(crate) struct Written {
+    pub(crate) kind: Option<Located<Kind>>,
     pub(crate) rho: Option<Located<f64>>,
     pub(crate) a: Option<Located<f64>>,
     pub(crate) n: Option<Located<f64>>,
     pub(crate) k: Option<Located<f64>>,
+    pub(crate) tau: Option<Located<f64>>,
     pub(crate) exitance: Option<Located<f64>>,
     pub(crate) emission_stokes: Option<Located<[f64; 4]>>,
     pub(crate) emission_axis: Option<Located<DVec3>>,
@@ -75,23 +78,53 @@ impl Library {
         name: &str,
         pick: impl Fn(&Written) -> Option<&Located<T>>,
     ) -> Option<(T, Origin)> {
-        let mut best: Option<(usize, (T, Origin))> = None;
+        let (definition, located) = self.find(name, pick)?;
+        let at = &located.at;
+        let origin = if definition.name == name {
+            Origin::Exact(at.to_string())
+        } else {
+            Origin::Glob(format!("{:?} at {at}", definition.name))
+        };
+        Some((located.value.clone(), origin))
+    }
+
+    /// Where the value stands that [`value`](Self::value) finds, and how closely its table names the material: by the
+    /// number of characters of its glob, `usize::MAX` for the exact name.
+    pub(crate) fn place<'a, T: 'a>(
+        &'a self,
+        name: &str,
+        pick: impl Fn(&Written) -> Option<&Located<T>>,
+    ) -> Option<(&'a Place, usize)> {
+        let (definition, located) = self.find(name, pick)?;
+        let closeness = if definition.name == name {
+            usize::MAX
+        } else {
+            definition.length()
+        };
+        Some((&located.at, closeness))
+    }
+
+    fn find<T>(
+        &self,
+        name: &str,
+        pick: impl Fn(&Written) -> Option<&Located<T>>,
+    ) -> Option<(&Definition, &Located<T>)> {
+        let mut best: Option<(&Definition, &Located<T>)> = None;
         for definition in &self.definitions {
             let Some(located) = pick(&definition.written) else {
                 continue;
             };
             if definition.name == name {
-                return Some((located.value.clone(), Origin::Exact(located.at.to_string())));
+                return Some((definition, located));
             }
-            let length = definition.name.chars().count();
+            let length = definition.length();
             if definition.matches(name)
-                && best.as_ref().is_none_or(|(longest, _)| length >= *longest)
+                && best.is_none_or(|(longest, _)| length >= longest.length())
             {
-                let origin = Origin::Glob(format!("{:?} at {}", definition.name, located.at));
-                best = Some((length, (located.value.clone(), origin)));
+                best = Some((definition, located));
             }
         }
-        best.map(|(_, value)| value)
+        best
     }
 
     /// Whether the scene file says anything of the material `name`.
@@ -154,6 +187,10 @@ impl Definition {
         self.is_glob() && self.glob.as_ref().is_some_and(|glob| glob.is_match(name))
     }
 
+    fn length(&self) -> usize {
+        self.name.chars().count()
+    }
+
     fn is_glob(&self) -> bool {
         is_glob(&self.name)
     }
@@ -166,20 +203,7 @@ pub(crate) fn is_glob(name: &str) -> bool {
 
 impl Written {
     fn read(mut table: Reader) -> Result<Self, Error> {
-        if let Some(field) = table.take("kind") {
-            let kind = field.choice(&[
-                ("mixture", "mixture"),
-                ("coated", "coated"),
-                ("pane", "pane"),
-            ])?;
-            if kind != "mixture" {
-                return Err(Error::NotAvailable {
-                    at: field.at().to_string(),
-                    what: format!("the material kind {kind:?}"),
-                    instead: "use \"mixture\"".into(),
-                });
-            }
-        }
+        let kind = table.take("kind");
         let mut number = |key, allowed| {
             let Some(field) = table.take(key) else {
                 return Ok(None);
@@ -189,10 +213,12 @@ impl Written {
             Ok::<_, Error>(Some(Located { value, at }))
         };
         let written = Self {
+            kind: located(kind, |field| field.choice(&Kind::CHOICES))?,
             rho: number("rho", Allowed::Share)?,
             a: number("a", Allowed::Share)?,
             n: number("n", Allowed::Index)?,
             k: number("k", Allowed::NotNegative)?,
+            tau: number("tau", Allowed::Share)?,
             exitance: number("exitance", Allowed::NotNegative)?,
             emission_stokes: located(table.take("emission_stokes"), |field| state(&field))?,
             emission_axis: located(table.take("emission_axis"), |field| field.direction())?,
@@ -218,134 +244,4 @@ fn located<T>(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::document::Node;
-
-    fn library(text: &str) -> Result<Library, String> {
-        let node = Node::document(&"room.toml".into(), text).unwrap();
-        let field = Reader::new("the scene file".into(), node)
-            .unwrap()
-            .take("material");
-        Library::read(field).map_err(|error| error.to_string())
-    }
-
-    fn rho(library: &Library, name: &str) -> Option<f64> {
-        library
-            .value(name, |written| written.rho.as_ref())
-            .map(|(rho, _)| rho)
-    }
-
-    #[test]
-    fn an_exact_name_goes_before_globs_and_the_longest_glob_before_others() {
-        let text = "[material.\"*\"]\nrho = 0.1\n[material.\"Wall*\"]\nrho = 0.2\n[material.Wall_West]\nrho = 0.3";
-        let library = library(text).unwrap();
-        assert_eq!(rho(&library, "Wall_West"), Some(0.3));
-        assert_eq!(rho(&library, "Wall_East"), Some(0.2));
-        assert_eq!(rho(&library, "Floor"), Some(0.1));
-        assert_eq!(rho(&library, "wall_East"), Some(0.1));
-    }
-
-    #[test]
-    fn of_two_globs_of_one_length_the_later_counts() {
-        let library =
-            library("[material.\"Wa*\"]\nrho = 0.2\n[material.\"*ll\"]\nrho = 0.3").unwrap();
-        assert_eq!(rho(&library, "Wall"), Some(0.3));
-        let text = "[material.\"*ll\"]\nrho = 0.3\n[material.\"Wa*\"]\nrho = 0.2";
-        assert_eq!(
-            rho(&super::tests::library(text).unwrap(), "Wall"),
-            Some(0.2)
-        );
-    }
-
-    #[test]
-    fn each_value_is_looked_up_by_itself() {
-        let library = library("[material.\"W*\"]\nrho = 0.2\n[material.Wall]\na = 1.0").unwrap();
-        assert_eq!(rho(&library, "Wall"), Some(0.2));
-        let (a, origin) = library.value("Wall", |written| written.a.as_ref()).unwrap();
-        assert!((a - 1.0).abs() < 1e-15);
-        assert_eq!(origin, Origin::Exact("room.toml:4:5".into()));
-    }
-
-    #[test]
-    fn a_name_with_glob_characters_can_be_meant_literally() {
-        let library =
-            library("[material.\"Wall [old\"]\nrho = 0.4\n[material.\"Wall*\"]\nrho = 0.2")
-                .unwrap();
-        assert_eq!(rho(&library, "Wall [old"), Some(0.4));
-        assert_eq!(rho(&library, "Wall*"), Some(0.2));
-    }
-
-    #[test]
-    fn a_name_that_matches_nothing_is_an_error_with_the_nearest() {
-        let library =
-            library("[material.\"Wal*\"]\n[material.Flor]\n[material.\"Door*\"]").unwrap();
-        let mut warnings = Vec::new();
-        let names = ["Wall", "Floor"];
-        let error = library
-            .check_used(&names, true, &mut warnings)
-            .unwrap_err()
-            .to_string();
-        assert!(
-            error.contains(
-                "room.toml:2:11: no material is called \"Flor\"; the nearest is \"Floor\""
-            ),
-            "{error}"
-        );
-        assert!(
-            error.contains("\"Door*\"") && !error.contains("\"Wal*\""),
-            "{error}"
-        );
-    }
-
-    #[test]
-    fn an_unused_name_among_shapes_is_a_warning() {
-        let library = library("[material.steel]\nrho = 0").unwrap();
-        let mut warnings = Vec::new();
-        library
-            .check_used(&["plaster"], false, &mut warnings)
-            .unwrap();
-        assert!(
-            warnings[0].contains("\"steel\" is used by nothing"),
-            "{warnings:?}"
-        );
-    }
-
-    #[test]
-    fn a_space_that_obj_made_an_underscore_is_suggested() {
-        let library = library("[material.\"Wall Paint\"]\nrho = 0").unwrap();
-        let names = ["WallPaint", "Wall_Paint"];
-        let error = library
-            .check_used(&names, true, &mut Vec::new())
-            .unwrap_err()
-            .to_string();
-        assert!(
-            error.contains("\"Wall_Paint\" (OBJ turns a space into _)"),
-            "{error}"
-        );
-    }
-
-    #[test]
-    fn kinds_to_come_are_refused_and_bad_values_located() {
-        let message = |text: &str| library(text).err().unwrap();
-        let error = message("[material.x]\nkind = \"pane\"");
-        assert!(
-            error.contains("room.toml:2:8") && error.contains("not available yet"),
-            "{error}"
-        );
-        let error = message("[material.x]\nrho = 1.5");
-        assert!(
-            error.starts_with(
-                "room.toml:2:7: [material.x] rho must be a number from 0 to 1, found 1.5"
-            ),
-            "{error}"
-        );
-        let error = message("[material.\"x y\"]\nn = 0");
-        assert!(
-            error.contains("[material.\"x y\"] n must be a number > 0, or inf"),
-            "{error}"
-        );
-        let error = message("[material.x]\nroh = 0.5");
-        assert!(error.contains("the nearest is \"rho\""), "{error}");
-    }
-}
+mod tests;

@@ -1,15 +1,18 @@
 //! Puts a material together: every value from the first place that gives it.
 
+mod reflector;
+
+use super::kind::Kind;
 use super::library::{Library, Written};
 use super::{Emission, Material, Origin, Value};
 use crate::allowed::Allowed;
-use crate::appearance::{Appearance, Given};
+use crate::appearance::{Appearance, Doubt, Given};
 use crate::error::Error;
 use crate::place::Located;
 use crate::polarisation::UNPOLARISED;
 use crate::properties::{Custom, Emitted};
 use glam::DVec3;
-use malus_optics::Index;
+use reflector::Reflector;
 
 /// Where the values of one material on one object, or on all that share it, can come from.
 pub(crate) struct Sources<'a> {
@@ -45,21 +48,20 @@ type Found<T> = (T, Origin);
 impl Sources<'_> {
     /// The material, with what is to be warned of.
     pub(crate) fn resolve(&self) -> Result<(Material, Vec<String>), Error> {
-        let (rho, a) = (self.rho()?, self.a()?);
-        let (n, k) = (self.n()?, self.k()?);
         let exitance = self.exitance()?;
         let (state, axis) = self.state();
         let two_sided = self
             .written(|written| written.two_sided.as_ref())
             .unwrap_or((true, Origin::Default));
-        let mut values = vec![
-            shown("rho", &rho),
-            shown("a", &a),
-            shown("n", &n),
-            shown("k", &k),
-            shown("exitance", &exitance),
-        ];
-        let doubts = self.doubts(&values);
+        let emits = (exitance.0 > 0.0).then_some(&exitance.1);
+        let one_sided = (!two_sided.0).then_some(&two_sided.1);
+        let reflector = self.reflector(emits.or(one_sided))?;
+        if reflector.kind.0 == Kind::Pane {
+            self.whole(emits, one_sided)?;
+        }
+        let doubts = self.doubts(&reflector);
+        let mut values = reflector.values;
+        values.push(shown("exitance", &exitance));
         let emission = (exitance.0 > 0.0).then(|| {
             let text = |list: &[f64]| format!("{list:?}");
             values.push(value("emission_stokes", text(&state.0), &state.1));
@@ -74,16 +76,42 @@ impl Sources<'_> {
         let material = Material {
             name: self.name.to_owned(),
             object: self.object.as_ref().map(|object| object.name.to_owned()),
-            optics: malus_optics::Material::Mixture {
-                rho: rho.0,
-                fraction: a.0,
-                index: Index::new(n.0, k.0),
-            },
+            optics: reflector.optics,
             two_sided: two_sided.0,
             emission,
             values,
         };
         Ok((material, doubts))
+    }
+
+    /// Refuses a pane that emits or has a black side.
+    fn whole(&self, emits: Option<&Origin>, one_sided: Option<&Origin>) -> Result<(), Error> {
+        let pane = format!("material {:?} is a pane", self.name);
+        let (at, reason) = if let Some(origin) = emits {
+            let at = self.place(origin, |written| written.exitance.as_ref());
+            let why = format!("{pane} and emits light ({origin}), which a pane cannot");
+            (
+                at,
+                format!("{why}; give exitance = 0, or kind = \"mixture\""),
+            )
+        } else if let Some(origin) = one_sided {
+            let at = self.place(origin, |written| written.two_sided.as_ref());
+            let why = format!("{pane}, which has no black side");
+            (
+                at,
+                format!("{why}; leave two_sided = false out, or give kind = \"mixture\""),
+            )
+        } else {
+            return Ok(());
+        };
+        Err(Error::Conflict { at, reason })
+    }
+
+    /// Where a value stands, for the beginning of a message: in the scene file, else who holds it.
+    fn place<T>(&self, origin: &Origin, pick: impl Fn(&Written) -> Option<&Located<T>>) -> String {
+        let written = matches!(origin, Origin::Exact(_) | Origin::Glob(_));
+        let place = self.library.place(self.name, pick).filter(|_| written);
+        place.map_or_else(|| self.holder.clone(), |(at, _)| at.to_string())
     }
 
     /// State of the emitted light, with its axis: that of a custom property is the object's local X.
@@ -133,77 +161,6 @@ impl Sources<'_> {
         .map(|found| found.unwrap_or((0.0, Origin::Default)))
     }
 
-    fn rho(&self) -> Result<Found<f64>, Error> {
-        let found = self.number(
-            "rho",
-            Allowed::Share,
-            |written| written.rho.as_ref(),
-            |custom| custom.rho,
-            |appearance| appearance.rho,
-        )?;
-        found.ok_or_else(|| Error::NoReflectance {
-            holder: self.holder.clone(),
-            name: self.name.to_owned(),
-            reason: match (self.appearance, self.library.knows(self.name)) {
-                (Some(_), _) => {
-                    "its file does not: no material library of it defines that name, or it has no Kd there".into()
-                }
-                (None, true) => "the scene file defines it without rho".into(),
-                (None, false) => "it is defined nowhere".into(),
-            },
-        })
-    }
-
-    fn a(&self) -> Result<Found<f64>, Error> {
-        let found = self.number(
-            "a",
-            Allowed::Share,
-            |written| written.a.as_ref(),
-            |custom| custom.a,
-            |appearance| appearance.a,
-        )?;
-        Ok(found.unwrap_or((0.0, Origin::Default)))
-    }
-
-    fn n(&self) -> Result<Found<f64>, Error> {
-        let found = self.number(
-            "n",
-            Allowed::Index,
-            |written| written.n.as_ref(),
-            |custom| custom.n,
-            |appearance| appearance.n,
-        )?;
-        Ok(found.unwrap_or((1.5, Origin::Default)))
-    }
-
-    fn k(&self) -> Result<Found<f64>, Error> {
-        let found = self.number(
-            "k",
-            Allowed::NotNegative,
-            |written| written.k.as_ref(),
-            |custom| custom.k,
-            |appearance| appearance.k,
-        )?;
-        Ok(found.unwrap_or((0.0, Origin::Default)))
-    }
-
-    fn number(
-        &self,
-        key: &'static str,
-        allowed: Allowed,
-        written: impl Fn(&Written) -> Option<&Located<f64>>,
-        custom: impl Fn(&Custom) -> Option<f64>,
-        field: impl Fn(&Appearance) -> Option<Given>,
-    ) -> Result<Option<Found<f64>>, Error> {
-        let found = self
-            .written(written)
-            .or_else(|| self.property(&format!("malus_{key}"), custom));
-        match found {
-            Some(found) => Ok(Some(found)),
-            None => self.field(key, allowed, field),
-        }
-    }
-
     fn written<T: Clone>(
         &self,
         pick: impl Fn(&Written) -> Option<&Located<T>>,
@@ -246,19 +203,20 @@ impl Sources<'_> {
     }
 
     /// What the file's fields leave in doubt, as far as their values are in use.
-    fn doubts(&self, values: &[Value]) -> Vec<String> {
+    fn doubts(&self, reflector: &Reflector) -> Vec<String> {
         let Some(appearance) = self.appearance else {
             return Vec::new();
         };
         let in_use = |key: &&str| {
-            let mut values = values.iter();
+            let mut values = reflector.values.iter();
             values.any(|value| value.key == *key && matches!(value.origin, Origin::Field(_)))
         };
-        let doubts = appearance.doubts.iter();
-        doubts
-            .filter(|(keys, _)| keys.is_empty() || keys.iter().any(in_use))
-            .map(|(_, text)| text.clone())
-            .collect()
+        let told = |doubt: &Doubt| match doubt {
+            Doubt::Value(keys, _) => keys.iter().any(in_use),
+            Doubt::Opaque(_) => reflector.kind.0 != Kind::Pane && !reflector.stated,
+        };
+        let doubts = appearance.doubts.iter().filter(|doubt| told(doubt));
+        doubts.map(ToString::to_string).collect()
     }
 }
 

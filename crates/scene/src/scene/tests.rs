@@ -1,8 +1,9 @@
 use super::*;
-use glam::DVec3;
 use std::path::PathBuf;
 
+mod cameras;
 mod office;
+mod panes;
 
 /// A folder with a scene file `room.toml` and other files.
 struct Room {
@@ -107,7 +108,7 @@ fn overrides_go_before_the_file() {
         scene.need.reason
     );
     assert_eq!((scene.settings.seed, scene.unit), (7, Unit::Watt));
-    let a = &scene.materials[0].values[1];
+    let a = &scene.materials[0].values[2];
     assert_eq!(a.origin.to_string(), "--set material.plaster.a=0.6");
     let error = room.with(&[("material.plaster.roh", "0.6")]).err().unwrap();
     assert!(
@@ -187,8 +188,14 @@ fn an_obj_gives_its_materials_and_its_sensor_is_no_geometry() {
         .map(|it| (it.key, it.value.as_str()))
         .collect();
     assert_eq!(
-        values[..4],
-        [("rho", "0.5"), ("a", "0"), ("n", "1.45"), ("k", "0")]
+        values[..5],
+        [
+            ("kind", "mixture"),
+            ("rho", "0.5"),
+            ("a", "0"),
+            ("n", "1.45"),
+            ("k", "0")
+        ]
     );
     assert_eq!(
         (scene.sensors.len(), scene.sensors[0].name.as_str()),
@@ -264,7 +271,7 @@ fn a_material_without_reflectance_names_object_and_material() {
     let scene = room
         .with(&[("material.\"Wall_Paint\".rho", "0.2")])
         .unwrap();
-    assert_eq!(scene.materials[0].values[0].value, "0.2");
+    assert_eq!(scene.materials[0].values[1].value, "0.2");
 }
 
 #[test]

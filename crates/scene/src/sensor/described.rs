@@ -1,5 +1,6 @@
 //! Sensors of the scene file.
 
+use super::aim::{Aim, aim, frame};
 use super::{
     Frame, Layout, Quantity, Sensor, SensorPoint, along, cell_centres, default_axis, faces, name,
     points_file,
@@ -21,7 +22,7 @@ pub(crate) struct Described {
     pub(crate) name: Located<String>,
     frame: Frame,
     axis: Option<Located<DVec3>>,
-    normal: Option<DVec3>,
+    aim: Aim,
     place: Where,
 }
 
@@ -40,19 +41,10 @@ impl Described {
     pub(crate) fn read(field: Field, folder: &Path) -> Result<Self, Error> {
         let mut table = field.table()?;
         let name = table.require("name", "a string that can name a file")?;
-        let name = checked_name(name)?;
-        let normal = table
-            .take("normal")
-            .map(|field| field.direction())
-            .transpose()?;
-        let place = place(&mut table, normal.unwrap_or(DVec3::Z), folder)?;
-        let quantity = table.take("quantity");
-        let frame = match table.take("frame") {
-            Some(field) => {
-                field.choice(&[("incidence", Frame::Incidence), ("fixed", Frame::Fixed)])?
-            }
-            None => Frame::Incidence,
-        };
+        let name = name::checked(name, "[[sensor]] name")?;
+        let aim = aim(&mut table)?;
+        let place = place(&mut table, &aim, folder)?;
+        let frame = frame(table.take("frame"), aim.quantity)?;
         let axis = match table.take("axis") {
             Some(field) => Some(Located {
                 value: field.direction()?,
@@ -60,15 +52,12 @@ impl Described {
             }),
             None => None,
         };
-        if let Some(quantity) = quantity {
-            refuse_radiance(&quantity, &mut table)?;
-        }
         table.finish()?;
         Ok(Self {
             name,
             frame,
             axis,
-            normal,
+            aim,
             place,
         })
     }
@@ -101,8 +90,8 @@ impl Described {
                     all.extend(points);
                     layouts.push(layout);
                 }
-                if let Some(normal) = self.normal {
-                    all.iter_mut().for_each(|point| point.normal = normal);
+                if let Some(direction) = self.aim.direction {
+                    all.iter_mut().for_each(|point| point.normal = direction);
                 }
                 let layout = match layouts.len() {
                     1 => layouts.remove(0),
@@ -118,15 +107,23 @@ impl Described {
         if let Some(axis) = &self.axis
             && points.iter().any(|point| along(axis.value, point.normal))
         {
+            let why = match self.aim.quantity {
+                Quantity::Irradiance => {
+                    "along its normal: light from straight above has no x axis there"
+                }
+                Quantity::Radiance => {
+                    "along the direction it looks in: another x axis takes its place"
+                }
+            };
             warnings.push(format!(
-                "{}: the axis of sensor {:?} lies along its normal: light from straight above has no x axis there",
+                "{}: the axis of sensor {:?} lies {why}",
                 axis.at, self.name.value
             ));
         }
         let axis = self.axis.map(|axis| axis.value);
         Ok(Sensor {
             name: self.name.value,
-            quantity: Quantity::Irradiance,
+            quantity: self.aim.quantity,
             frame: self.frame,
             axis: axis.unwrap_or_else(|| default_axis(along_u, &points)),
             points,
@@ -135,41 +132,8 @@ impl Described {
     }
 }
 
-fn checked_name(field: Field) -> Result<Located<String>, Error> {
-    let name = field.text()?;
-    match name::fault(&name.value) {
-        None => Ok(name),
-        Some(allowed) => Err(Error::BadValue {
-            at: name.at.to_string(),
-            key: "[[sensor]] name".into(),
-            found: format!("{:?}", name.value),
-            allowed,
-            hint: String::new(),
-        }),
-    }
-}
-
-/// Reads and checks what a radiance needs, then says that it is not there yet.
-fn refuse_radiance(quantity: &Field, table: &mut Reader) -> Result<(), Error> {
-    let choices = [
-        ("irradiance", Quantity::Irradiance),
-        ("radiance", Quantity::Radiance),
-    ];
-    if quantity.choice(&choices)? == Quantity::Irradiance {
-        return Ok(());
-    }
-    table
-        .require("direction", "[x, y, z], where the sensor looks")?
-        .direction()?;
-    Err(Error::NotAvailable {
-        at: quantity.at().to_string(),
-        what: "the quantity \"radiance\"".into(),
-        instead: "use \"irradiance\"".into(),
-    })
-}
-
 /// Reads the one key that says where the points are.
-fn place(table: &mut Reader, normal: DVec3, folder: &Path) -> Result<Where, Error> {
+fn place(table: &mut Reader, aim: &Aim, folder: &Path) -> Result<Where, Error> {
     const KEYS: [&str; 5] = ["grid", "points", "line", "file", "mesh"];
     let spacing = table.take("spacing");
     let mut given: Vec<(&str, Field)> = KEYS
@@ -201,12 +165,22 @@ fn place(table: &mut Reader, normal: DVec3, folder: &Path) -> Result<Where, Erro
             reason: format!("spacing goes with mesh, not with {key}"),
         });
     }
+    let radiance = aim.quantity == Quantity::Radiance;
+    if radiance && aim.direction.is_none() && key != "file" {
+        let expected = "[x, y, z], where the sensor looks";
+        table.require("direction", expected)?;
+    }
+    let normal = aim.direction.unwrap_or(DVec3::Z);
     Ok(match key {
         "grid" => grid(field, normal)?,
         "points" => points(field, normal)?,
         "line" => line(field, normal)?,
         "file" => Where::Given(
-            points_file::read(&field.text()?, folder, normal)?,
+            points_file::read(
+                &field.text()?,
+                folder,
+                aim.direction.or((!radiance).then_some(DVec3::Z)),
+            )?,
             Layout::Points,
         ),
         _ => Where::Objects {

@@ -1,5 +1,8 @@
-//! Names of sensors, which become names of files.
+//! Names of sensors and cameras, which become names of files.
 
+use crate::error::Error;
+use crate::place::Located;
+use crate::reader::Field;
 use std::collections::BTreeSet;
 
 /// Characters that some file system does not allow.
@@ -8,8 +11,23 @@ const FORBIDDEN: [char; 9] = ['/', '\\', ':', '*', '?', '"', '<', '>', '|'];
 /// The longest name, in bytes: file systems allow 255, suffix included.
 const LONGEST: usize = 200;
 
+/// The name under `key`, which has to be able to name a file.
+pub(crate) fn checked(field: Field, key: &str) -> Result<Located<String>, Error> {
+    let name = field.text()?;
+    match fault(&name.value) {
+        None => Ok(name),
+        Some(allowed) => Err(Error::BadValue {
+            at: name.at.to_string(),
+            key: key.to_owned(),
+            found: format!("{:?}", name.value),
+            allowed,
+            hint: String::new(),
+        }),
+    }
+}
+
 /// Why `name` cannot be the name of a file; `None` if it can.
-pub(crate) fn fault(name: &str) -> Option<String> {
+fn fault(name: &str) -> Option<String> {
     if name.trim().is_empty() {
         return Some("a name that is not empty".into());
     }

@@ -8,12 +8,12 @@ use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Reads the points of `file`, relative to `folder`. A line of three numbers takes `normal`; blank lines and what
-/// follows a `#` are passed over.
+/// Reads the points of `file`, relative to `folder`. A line of three numbers takes `normal`, and is an error
+/// without one; blank lines and what follows a `#` are passed over.
 pub(super) fn read(
     file: &Located<String>,
     folder: &Path,
-    normal: DVec3,
+    normal: Option<DVec3>,
 ) -> Result<Vec<SensorPoint>, Error> {
     let path = folder.join(&file.value);
     let shown: Arc<str> = path.display().to_string().into();
@@ -55,11 +55,15 @@ pub(super) fn read(
     Ok(points)
 }
 
-fn point(line: &str, normal: DVec3) -> Result<SensorPoint, String> {
+fn point(line: &str, normal: Option<DVec3>) -> Result<SensorPoint, String> {
     let number = |word: &str| word.parse::<f64>().ok().filter(|n| n.is_finite());
     let numbers: Option<Vec<f64>> = line.split_whitespace().map(number).collect();
     match numbers.as_deref() {
-        Some(&[x, y, z]) => Ok(SensorPoint::new(DVec3::new(x, y, z), normal)),
+        Some(&[x, y, z]) => normal
+            .map(|normal| SensorPoint::new(DVec3::new(x, y, z), normal))
+            .ok_or_else(|| {
+                "x y z nx ny nz with the direction looked in, since the sensor gives no direction for all".into()
+            }),
         Some(&[x, y, z, nx, ny, nz]) => unit(DVec3::new(nx, ny, nz))
             .map(|normal| SensorPoint::new(DVec3::new(x, y, z), normal))
             .ok_or_else(|| "x y z nx ny nz with a normal that is not zero".into()),
@@ -72,13 +76,17 @@ mod tests {
     use super::*;
 
     fn file(text: &[u8]) -> Result<Vec<SensorPoint>, String> {
+        file_with(text, Some(DVec3::Z))
+    }
+
+    fn file_with(text: &[u8], normal: Option<DVec3>) -> Result<Vec<SensorPoint>, String> {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("desk.pts"), text).unwrap();
         let name = Located {
             value: "desk.pts".to_owned(),
             at: Place::Override("file".into()),
         };
-        read(&name, folder.path(), DVec3::Z).map_err(|error| error.to_string())
+        read(&name, folder.path(), normal).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -88,6 +96,17 @@ mod tests {
         assert_eq!(points[0].position, DVec3::new(0.5, 1.0, 0.75));
         assert_eq!(points[0].normal, DVec3::NEG_Z);
         assert_eq!(points[1].normal, DVec3::Z);
+    }
+
+    #[test]
+    fn without_a_normal_every_line_has_to_give_one() {
+        let points = file_with(b"1 2 3 0 3 0\n", None).unwrap();
+        assert_eq!(points[0].normal, DVec3::Y);
+        let error = file_with(b"1 2 3 0 3 0\n1 2 3\n", None).unwrap_err();
+        assert!(
+            error.contains("desk.pts:2:1: ") && error.contains("the direction looked in"),
+            "{error}"
+        );
     }
 
     #[test]
@@ -108,7 +127,7 @@ mod tests {
             value: "none.pts".to_owned(),
             at: Place::Override("sensor.0.file=none.pts".into()),
         };
-        let error = read(&name, Path::new("."), DVec3::Z)
+        let error = read(&name, Path::new("."), Some(DVec3::Z))
             .unwrap_err()
             .to_string();
         assert!(

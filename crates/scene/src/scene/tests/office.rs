@@ -3,6 +3,9 @@
 use super::*;
 use crate::{Layout, SourceKind};
 
+/// The glass of its table and its partition, which are closed boxes and so no panes.
+const GLASS: &str = "[material.Glass]\nkind = \"mixture\"\n";
+
 fn office(file: &str, text: &str) -> Result<Scene, String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/meshes/blender_office");
     let mesh = folder.join(file).canonicalize().unwrap();
@@ -28,7 +31,7 @@ fn sensor<'a>(scene: &'a Scene, name: &str) -> &'a Sensor {
 
 #[test]
 fn the_blender_office_is_understood() {
-    let scene = office("office.glb", "").unwrap();
+    let scene = office("office.glb", GLASS).unwrap();
     // expected.json beside the file, as Blender itself counts; the sensor's 24 triangles are no geometry.
     assert_eq!(scene.surfaces.len(), 1786 - 24);
     let panel = material(&scene, "Lamp_Panel").emission.as_ref().unwrap();
@@ -49,7 +52,7 @@ fn the_blender_office_is_understood() {
         "{:?}",
         scene.warnings
     );
-    assert!(has(&scene.warnings, "\"Glass\" transmits light"));
+    assert!(!has(&scene.warnings, "\"Glass\""));
     assert!(has(
         &scene.warnings,
         "\"Lamp_Dim\" emits by its file's strength"
@@ -58,7 +61,7 @@ fn the_blender_office_is_understood() {
 
 #[test]
 fn the_sensors_of_the_blender_office_lie_where_blender_has_them() {
-    let scene = office("office.glb", "").unwrap();
+    let scene = office("office.glb", GLASS).unwrap();
     let plane = sensor(&scene, "SENSOR_Workplane");
     assert_eq!(plane.points.len(), 77);
     let Layout::Grid {
@@ -101,7 +104,7 @@ fn the_sensors_of_the_blender_office_lie_where_blender_has_them() {
 
 #[test]
 fn the_lamps_of_the_blender_office_shine_as_blender_wrote_them() {
-    let scene = office("office.glb", "").unwrap();
+    let scene = office("office.glb", GLASS).unwrap();
     let source = |name: &str| {
         scene
             .sources
@@ -145,7 +148,7 @@ fn the_lamps_of_the_blender_office_shine_as_blender_wrote_them() {
 #[test]
 fn the_scene_file_goes_before_the_office_s_own_properties() {
     let text = "[material.\"Lamp_*\"]\nexitance = 0\n[material.Steel_Brushed]\nn = 1.5\nk = 0\n";
-    let scene = office("office.glb", text).unwrap();
+    let scene = office("office.glb", &format!("{GLASS}{text}")).unwrap();
     assert!(
         scene
             .materials
@@ -168,4 +171,34 @@ fn the_office_as_obj_keeps_its_sensor_out_of_the_lamps() {
     let area = areas(&scene.surfaces, scene.materials.len())[dim];
     // expected.json: 0.037 m², where the sensor would add 2 m².
     assert!((area - 0.037).abs() < 1e-6, "{area}");
+}
+
+#[test]
+fn the_glass_boxes_of_the_office_are_no_panes_and_are_named() {
+    let error = office("office.glb", "").err().unwrap();
+    for part in [
+        "material \"Glass\" is a pane (KHR_materials_transmission ≥ 0.5)",
+        "closed solids: \"Partition\", \"Table_Glass\"; ",
+        "replace it by a single sheet",
+        "[material.\"Glass\"]\n    kind = \"mixture\"",
+    ] {
+        assert!(error.contains(part), "no {part:?} in {error}");
+    }
+    // A gloss given for it says that no pane is meant.
+    let scene = office("office.glb", "[material.Glass]\na = 1\n").unwrap();
+    assert!(has(&scene.warnings, "\"Glass\" transmits light"));
+}
+
+#[test]
+fn the_glass_of_the_office_as_obj_is_opaque_unless_it_is_called_a_pane() {
+    let scene = office("office.obj", "").unwrap();
+    assert!(has(&scene.warnings, "\"Glass\" transmits light"));
+    let error = office("office.obj", "[material.Glass]\nkind = \"pane\"\n")
+        .err()
+        .unwrap();
+    assert!(
+        error.contains("room.toml:4:8: material \"Glass\" is a pane")
+            && error.contains("\"Partition\""),
+        "{error}"
+    );
 }

@@ -158,16 +158,133 @@ fn a_grid_needs_an_area_and_two_counts() {
 }
 
 #[test]
-fn radiance_is_read_and_checked_and_then_refused() {
+fn a_radiance_looks_along_its_direction() {
     let text = format!("{GRID}quantity = \"radiance\"\n");
+    let sensor = sensor(&format!("{text}direction = [0, 0, -3]"));
+    assert_eq!(sensor.quantity, Quantity::Radiance);
+    assert_eq!((sensor.frame, sensor.axis), (Frame::Fixed, DVec3::X));
     assert!(
-        described(&text)
-            .unwrap_err()
-            .contains("lacks the key \"direction\"")
+        sensor
+            .points
+            .iter()
+            .all(|point| point.normal == DVec3::NEG_Z)
     );
-    let error = described(&format!("{text}direction = [0, 0, 0]")).unwrap_err();
-    assert!(error.contains("not zero"), "{error}");
-    let error = described(&format!("{text}direction = [0, 0, 1]")).unwrap_err();
-    assert!(error.starts_with("room.toml:3:12: "), "{error}");
-    assert!(error.contains("not available yet"), "{error}");
+}
+
+#[test]
+fn the_axis_of_a_radiance_is_its_own_or_the_first_across_the_view() {
+    let point = "name = \"p\"\npoints = [[1, 2, 3]]\nquantity = \"radiance\"\n";
+    assert_eq!(
+        sensor(&format!("{point}direction = [0, 1, 0]")).axis,
+        DVec3::X
+    );
+    assert_eq!(
+        sensor(&format!("{point}direction = [1, 0, 0]")).axis,
+        DVec3::Y
+    );
+    let along = format!("{GRID}quantity = \"radiance\"\ndirection = [1, 0, 0]");
+    assert_eq!(sensor(&along).axis, DVec3::Y);
+    let own = sensor(&format!("{point}direction = [1, 0, 0]\naxis = [0, 0, 1]"));
+    assert_eq!(own.axis, DVec3::Z);
+    let mut warnings = Vec::new();
+    let text = format!("{point}direction = [1, 0, 0]\naxis = [2, 0, 0]");
+    described(&text)
+        .unwrap()
+        .placed(&[], &mut warnings)
+        .unwrap();
+    assert!(
+        warnings[0].starts_with("room.toml:5:8: ") && warnings[0].contains("it looks in"),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn a_file_of_points_says_itself_where_each_looks() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |points: &str, line: &str| {
+        std::fs::write(folder.path().join("eye.pts"), points).unwrap();
+        let text = format!("name = \"e\"\nfile = \"eye.pts\"\nquantity = \"radiance\"\n{line}");
+        let node = Node::document(&"room.toml".into(), &text).unwrap();
+        let described = Described::read(Field::new("[[sensor]]".into(), node), folder.path());
+        let sensor = described.and_then(|it| it.placed(&[], &mut Vec::new()));
+        sensor.map_err(|error| error.to_string())
+    };
+    let normals =
+        |sensor: Sensor| -> Vec<DVec3> { sensor.points.iter().map(|point| point.normal).collect() };
+    assert_eq!(normals(read("1 1 1 0 2 0\n", "").unwrap()), [DVec3::Y]);
+    let two = read("1 1 1 0 2 0\n1 1 1\n", "direction = [1, 0, 0]").unwrap();
+    assert_eq!(normals(two), [DVec3::Y, DVec3::X]);
+    let error = read("1 1 1 0 2 0\n1 1 1\n", "").unwrap_err();
+    assert!(
+        error.contains("eye.pts:2:1: ") && error.contains("gives no direction for all"),
+        "{error}"
+    );
+}
+
+#[test]
+fn the_direction_goes_before_the_normals_of_faces() {
+    let board = Object {
+        name: "Board".into(),
+        properties: Default::default(),
+        parts: vec![malus_geometry::load::Part {
+            material: None,
+            positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+            triangles: vec![[0, 1, 2]],
+            faces: vec![0],
+        }],
+        frame: glam::DAffine3::IDENTITY,
+    };
+    let text = "name = \"b\"\nmesh = \"Board\"\nquantity = \"radiance\"\ndirection = [0, 0, -1]";
+    let sensor = described(text).unwrap().placed(&[&board], &mut Vec::new());
+    assert_eq!(sensor.unwrap().points[0].normal, DVec3::NEG_Z);
+}
+
+#[test]
+fn what_does_not_go_with_a_quantity_is_an_error_that_says_so() {
+    let radiance = "quantity = \"radiance\"\n";
+    let looks = "quantity = \"radiance\"\ndirection = [0, 0, 1]\n";
+    for (text, place, expected) in [
+        (
+            radiance.to_owned(),
+            "1:1",
+            "lacks the key \"direction\": [x, y, z], where the sensor looks",
+        ),
+        (
+            format!("{radiance}directoin = [0, 0, 1]"),
+            "4:1",
+            "the nearest is \"direction\"",
+        ),
+        (
+            format!("{radiance}direction = [0, 0, 0]"),
+            "4:13",
+            "not zero",
+        ),
+        (
+            format!("{looks}normal = [0, 0, 1]"),
+            "5:10",
+            "direction is where the sensor looks",
+        ),
+        (
+            format!("{looks}frame = \"fixed\""),
+            "5:9",
+            "frame goes with quantity = \"irradiance\"",
+        ),
+        (
+            "direction = [0, 0, 1]".into(),
+            "3:13",
+            "direction goes with quantity = \"radiance\"",
+        ),
+        (
+            "quantity = \"radience\"".into(),
+            "3:12",
+            "the nearest is \"radiance\"",
+        ),
+    ] {
+        let error = described(&format!("{GRID}{text}")).unwrap_err();
+        assert!(
+            error.starts_with(&format!("room.toml:{place}: ")),
+            "{text}: {error}"
+        );
+        assert!(error.contains(expected), "{text}: {error}");
+    }
 }
