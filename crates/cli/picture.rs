@@ -35,10 +35,6 @@ const NO_LIGHT: [u8; 3] = [0, 0, 0];
 ///
 /// # Errors
 /// The picture holds something that is no number, or a file cannot be written.
-#[cfg_attr(
-    not(test),
-    expect(dead_code, reason = "a run has pictures once scenes have cameras")
-)]
 pub fn write(picture: &Picture, scene: &Scene, directory: &Directory, name: &str) -> Result<()> {
     let finite = picture
         .stokes

@@ -44,6 +44,24 @@ impl Reporter {
         }
     }
 
+    /// Shows which share of a picture is done after `elapsed` seconds.
+    pub fn show_share(&mut self, name: &str, share: f64, elapsed: f64) {
+        let message = format!("{name}: {:.0} %", 100.0 * share);
+        match &mut self.form {
+            Form::Silent => {}
+            Form::Bar(bar) => {
+                bar.set_position((share * STEPS as f64) as u64);
+                bar.set_message(message);
+            }
+            Form::Lines { last } => {
+                if elapsed >= *last + PLAIN_LINES_S {
+                    *last = elapsed;
+                    eprintln!("{} so far: {message}", duration(elapsed));
+                }
+            }
+        }
+    }
+
     /// Shows where the run stands after `elapsed` seconds.
     pub fn show(&mut self, progress: &Progress, elapsed: f64) {
         let left = self.forecast.seconds_left(progress, elapsed, self.limit);

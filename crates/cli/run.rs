@@ -7,10 +7,10 @@ use crate::interrupt::Interrupt;
 use crate::output::Directory;
 use crate::progress::Reporter;
 use crate::summary::Circumstances;
-use crate::{overview, plan, rows, stop, summary};
+use crate::{overview, picture, plan, rows, stop, summary};
 use anyhow::{Context, anyhow};
-use malus_estimator::{Answer, Results};
-use malus_scene::{Scene, Settings};
+use malus_estimator::{Answer, Picture, Results};
+use malus_scene::{Camera, Scene, Settings};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -35,8 +35,28 @@ pub fn run(command: &args::Run) -> Result<End, Failure> {
     stop::narrow(&mut settings, &command.overrides());
     let directory = Directory::prepare(&directory(command)).map_err(Failure::run)?;
     warn(&scene.warnings);
-    let (results, seconds) = compute(command, &scene, &settings, threads)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .with_context(|| format!("cannot start {threads} threads"))
+        .map_err(Failure::run)?;
+    let interrupt = Interrupt::listen().map_err(Failure::run)?;
+    let (results, seconds) = pool.install(|| compute(command, &scene, &settings, &interrupt));
     warn(&results.warnings);
+    let pictured = if command.no_pictures {
+        &[][..]
+    } else {
+        &scene.cameras
+    };
+    let mut complete = results.complete;
+    for camera in pictured {
+        if interrupt.asked() {
+            break;
+        }
+        let taken = pool.install(|| shoot(command, &scene, &settings, camera, &interrupt));
+        complete &= taken.complete;
+        picture::write(&taken, &scene, &directory, &camera.name).map_err(Failure::run)?;
+    }
     let circumstances = Circumstances {
         seconds,
         threads,
@@ -51,7 +71,7 @@ pub fn run(command: &args::Run) -> Result<End, Failure> {
         let text = overview::text(&scene, &results, &digests, &circumstances, directory.path());
         print(&text).map_err(Failure::run)?;
     }
-    if results.complete {
+    if complete {
         Ok(End::Complete)
     } else {
         warn(&[format!(
@@ -105,29 +125,43 @@ fn compute(
     command: &args::Run,
     scene: &Scene,
     settings: &Settings,
-    threads: usize,
-) -> Result<(Results, f64), Failure> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .with_context(|| format!("cannot start {threads} threads"))
-        .map_err(Failure::run)?;
-    let interrupt = Interrupt::listen().map_err(Failure::run)?;
+    interrupt: &Interrupt,
+) -> (Results, f64) {
     let started = Instant::now();
     let mut reporter = Reporter::new(command.quiet, settings.seconds);
-    let results = pool.install(|| {
-        malus_estimator::run(scene, settings, &mut |progress| {
-            let elapsed = started.elapsed().as_secs_f64();
-            reporter.show(progress, elapsed);
-            if interrupt.asked() {
-                Answer::Interrupt
-            } else {
-                stop::answer(progress, elapsed, settings.seconds)
-            }
-        })
+    let results = malus_estimator::run(scene, settings, &mut |progress| {
+        let elapsed = started.elapsed().as_secs_f64();
+        reporter.show(progress, elapsed);
+        if interrupt.asked() {
+            Answer::Interrupt
+        } else {
+            stop::answer(progress, elapsed, settings.seconds)
+        }
     });
     reporter.finish();
-    Ok((results, started.elapsed().as_secs_f64()))
+    (results, started.elapsed().as_secs_f64())
+}
+
+/// The picture that a camera takes.
+fn shoot(
+    command: &args::Run,
+    scene: &Scene,
+    settings: &Settings,
+    camera: &Camera,
+    interrupt: &Interrupt,
+) -> Picture {
+    let started = Instant::now();
+    let mut reporter = Reporter::new(command.quiet, None);
+    let picture = malus_estimator::picture(scene, camera, settings, &mut |share| {
+        reporter.show_share(&camera.name, share, started.elapsed().as_secs_f64());
+        if interrupt.asked() {
+            Answer::Interrupt
+        } else {
+            Answer::Continue
+        }
+    });
+    reporter.finish();
+    picture
 }
 
 /// Writes all files; the summary last, so that where it is, everything is.
@@ -145,8 +179,8 @@ fn write(
     directory.write("grids.csv", &grids)?;
     let pictured = if command.no_pictures { &[] } else { digests };
     for (index, (sensor, digest)) in scene.sensors.iter().zip(pictured).enumerate() {
-        if let Some(picture) = plan::svg(scene, results, index, digest) {
-            directory.write(&format!("{}.svg", sensor.name), picture.as_bytes())?;
+        if let Some(drawn) = plan::svg(scene, results, index, digest) {
+            directory.write(&format!("{}.svg", sensor.name), drawn.as_bytes())?;
         }
     }
     directory.write("summary.json", summary)

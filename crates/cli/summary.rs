@@ -39,7 +39,23 @@ struct Summary<'a> {
     stop: &'a str,
     repeat: &'a str,
     relative_error_max: f64,
+    techniques: Techniques,
     warnings: &'a [String],
+}
+
+/// What each way of finding light has brought, as shares of S0 summed over the free sensor points.
+#[derive(Serialize)]
+struct Techniques {
+    /// Straight from sources without geometry, summed exactly.
+    exact: f64,
+    /// Walks from the sensors that looked at emitters.
+    looked: f64,
+    /// The same in mirrors.
+    mirrored: f64,
+    /// Walks from the sensors that met emitters by chance.
+    met: f64,
+    /// Walks from the emitters, joined to the sensors.
+    local: f64,
 }
 
 /// The summary as JSON.
@@ -71,6 +87,13 @@ pub fn json(
         stop: stop(results.stop),
         repeat: &circumstances.repeat,
         relative_error_max: results.relative_error_max,
+        techniques: Techniques {
+            exact: results.shares.exact,
+            looked: results.shares.looked,
+            mirrored: results.shares.mirrored,
+            met: results.shares.met,
+            local: results.shares.local,
+        },
         warnings: &circumstances.warnings,
     };
     let mut text = serde_json::to_vec_pretty(&summary)?;

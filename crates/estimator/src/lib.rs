@@ -27,7 +27,7 @@ mod run;
 mod statistics;
 mod trace;
 
-pub use picture::Picture;
+pub use picture::{Picture, picture};
 pub use results::{Answer, Group, Paired, Progress, Reading, Results, Shares, Stop};
 pub use run::run;
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};

@@ -35,14 +35,19 @@ pub fn run(
     settings: &Settings,
     watch: &mut dyn FnMut(&Progress) -> Answer,
 ) -> Results {
-    let representation = match settings.model {
-        Model::Polarised => settings.representation.unwrap_or(scene.need.representation),
-        Model::Scalar | Model::Diffuse => Representation::Intensity,
-    };
+    let representation = representation_of(scene, settings);
     match representation {
         Representation::Intensity => run_with::<1>(scene, settings, representation, watch),
         Representation::Linear => run_with::<3>(scene, settings, representation, watch),
         Representation::Full => run_with::<4>(scene, settings, representation, watch),
+    }
+}
+
+/// How many components a run carries.
+pub(crate) fn representation_of(scene: &Scene, settings: &Settings) -> Representation {
+    match settings.model {
+        Model::Polarised => settings.representation.unwrap_or(scene.need.representation),
+        Model::Scalar | Model::Diffuse => Representation::Intensity,
     }
 }
 
