@@ -94,6 +94,7 @@ mod tests {
             compare_diffuse: false,
             representation: None,
             estimator: Estimator::Auto,
+            cell: None,
             samples: Some(1024),
             relative_error: Some(0.01),
             seconds: Some(60.0),

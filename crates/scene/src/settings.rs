@@ -44,6 +44,8 @@ pub struct Settings {
     pub representation: Option<Representation>,
     /// How walks are joined to the sensors.
     pub estimator: Estimator,
+    /// Side of the counting cells of [`Estimator::Direct`] in m, > 0.
+    pub cell: Option<f64>,
     /// Number of walks, > 0.
     pub samples: Option<u64>,
     /// Standard error of S0 as a share of S0 at which the run stops, > 0.
@@ -63,6 +65,7 @@ impl Settings {
             compare_diffuse: false,
             representation: None,
             estimator: Estimator::Auto,
+            cell: None,
             samples: None,
             relative_error: None,
             seconds: None,
