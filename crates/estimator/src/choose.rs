@@ -23,7 +23,7 @@ const TRUSTED: f64 = 0.02;
 /// An estimator with the reason for it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Chosen {
-    /// Local or gather.
+    /// Local, gather or direct.
     pub estimator: Estimator,
     /// One sentence.
     pub reason: String,
@@ -41,11 +41,11 @@ impl Chosen {
 /// The estimator asked for, or for `auto` the one that misses least, and among equals the one that is cheaper.
 pub(crate) fn choose<const N: usize>(engine: &Engine<N>, asked: Estimator) -> Chosen {
     match asked {
-        Estimator::Local | Estimator::Gather => Chosen {
+        Estimator::Local | Estimator::Gather | Estimator::Direct => Chosen {
             estimator: asked,
             reason: "asked for".into(),
         },
-        Estimator::Auto | Estimator::Direct => automatic(engine),
+        Estimator::Auto => automatic(engine),
     }
 }
 
@@ -188,6 +188,8 @@ pub(crate) fn blind_spots(medium: &Medium, estimator: Estimator) -> Vec<String> 
         Estimator::Local => vec![format!(
             "local: light whose last reflection before the sensor is mirror-like is missing (off {mirrors})"
         )],
+        // What is counted is counted by whatever way it came.
+        Estimator::Direct => Vec::new(),
         _ if sources > 0.0 => vec![format!(
             "gather: light of point, spot and distant sources ({:.1} % of the flux) that a mirror-like reflection \
              (off {mirrors}) sends on to a sensor or to a diffuse surface is missing",

@@ -1,5 +1,6 @@
 //! What a run works with: the walks it takes, and the sums they go to.
 
+use crate::direct::{Cells, direct};
 use crate::gather::gather;
 use crate::local::local;
 use crate::pass::{Channels, Effort, Passes};
@@ -23,6 +24,8 @@ pub(crate) struct Engine<'a, const N: usize> {
     pub channels: Channels,
     /// The sensors.
     pub receivers: &'a [Receiver],
+    /// The cells in which `direct` counts, where that was asked for.
+    pub cells: Option<&'a Cells>,
     /// Seed of all random numbers.
     pub seed: u64,
 }
@@ -37,13 +40,24 @@ impl<const N: usize> Engine<'_, N> {
     /// Walks a replica that make up one step.
     #[must_use]
     pub(crate) fn step(&self) -> u64 {
-        (STEP / (u64::from(REPLICAS) * self.receivers.len().max(1) as u64)).max(1)
+        // A walk that is only counted costs the same however many sensors there are.
+        let joined = match self.cells {
+            Some(_) => 1,
+            None => self.receivers.len().max(1) as u64,
+        };
+        (STEP / (u64::from(REPLICAS) * joined)).max(1)
     }
 
     /// Takes every replica to `until` walks. Each sum is added to by one task, in the order of the walks.
     pub(crate) fn advance(&self, estimator: Estimator, tally: &mut Tally, until: u64) -> Effort {
         let replicas: Vec<&mut Replica> = tally.replicas_mut().collect();
-        let efforts: Vec<Effort> = if estimator == Estimator::Local {
+        let efforts: Vec<Effort> = if let (Estimator::Direct, Some(cells)) = (estimator, self.cells)
+        {
+            replicas
+                .into_par_iter()
+                .map(|replica| self.advance_direct(cells, replica, until))
+                .collect()
+        } else if estimator == Estimator::Local {
             replicas
                 .into_par_iter()
                 .map(|replica| self.advance_local(replica, until))
@@ -67,6 +81,21 @@ impl<const N: usize> Engine<'_, N> {
             &self.passes,
             &self.channels,
             self.receivers,
+            stream,
+            replica.points..until,
+            &mut replica.sums,
+        );
+        replica.points = until;
+        effort
+    }
+
+    fn advance_direct(&self, cells: &Cells, replica: &mut Replica, until: u64) -> Effort {
+        let stream = Stream::new(self.seed, replica.id);
+        let effort = direct::<N>(
+            &self.passes,
+            &self.channels,
+            self.receivers,
+            cells,
             stream,
             replica.points..until,
             &mut replica.sums,

@@ -5,12 +5,15 @@
 //! once. The crate reads no files, prints nothing and knows no clock.
 
 mod choose;
+mod direct;
 mod direction;
 mod emitters;
 mod engine;
 mod evaluate;
 mod exact;
 mod gather;
+mod journey;
+mod ledger;
 mod local;
 mod pass;
 mod random;
@@ -21,6 +24,6 @@ mod run;
 mod statistics;
 mod trace;
 
-pub use results::{Answer, Group, Paired, Progress, Reading, Results, Stop};
+pub use results::{Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Results, Stop};
 pub use run::run;
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};

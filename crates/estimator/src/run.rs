@@ -1,9 +1,11 @@
 //! A run: replicas taken further in steps until a stopping rule holds.
 
 use crate::choose::{blind_spots, choose, erratic};
+use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::exact;
+use crate::ledger::Ledger;
 use crate::pass::{Channels, Passes, has_mirrors, materials_of};
 use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
@@ -60,19 +62,30 @@ fn run_with<const N: usize>(
         Model::Polarised | Model::Scalar => materials_of(Model::Diffuse, &scene.materials),
     });
     let receivers = Receiver::all(scene);
+    let cells = (settings.estimator == Estimator::Direct).then(|| {
+        let side = settings.cell.unwrap_or(direct::SIDE);
+        Cells::new(&scene.surfaces, &receivers, side)
+    });
     let engine = Engine::<N> {
         passes: Passes::new(scene, &emitters, &main, apart.as_deref()),
         channels,
         receivers: &receivers,
+        cells: cells.as_ref(),
         seed: settings.seed,
     };
     let chosen = choose(&engine, settings.estimator);
-    let exact = exact::from_sources::<N>(&engine.passes.main, &receivers);
+    let exact = match cells {
+        // Counted like all other light.
+        Some(_) => vec![[0.0; N]; receivers.len()],
+        None => exact::from_sources::<N>(&engine.passes.main, &receivers),
+    };
     let mirrors = engine
         .passes
         .media()
         .any(|medium| has_mirrors(medium.materials));
-    let unmet = if mirrors && chosen.estimator == Estimator::Gather {
+    let unmet = if let Some(cells) = &cells {
+        direct::unmet(&engine.passes.main, cells)
+    } else if mirrors && chosen.estimator == Estimator::Gather {
         emitters.unmet()
     } else {
         Unmet::default()
@@ -124,6 +137,7 @@ fn run_with<const N: usize>(
         }
     };
 
+    let ledger = Ledger::keep(&engine, chosen.estimator, taken);
     let relative_error_max = readings.relative_error(&tally);
     // The scalar model beside the diffuse one has mirrors of its own.
     let mut warnings: Vec<String> = engine
@@ -132,7 +146,12 @@ fn run_with<const N: usize>(
         .flat_map(|medium| blind_spots(medium, chosen.estimator))
         .collect();
     warnings.extend(erratic(&engine, chosen.estimator));
-    warnings.extend(exact::singular(&engine.passes.main, &receivers));
+    if let Some(cells) = &cells {
+        warnings.push(direct::warning(cells));
+    } else {
+        warnings.extend(exact::singular(&engine.passes.main, &receivers));
+    }
+    warnings.extend(ledger.leak(scene));
     if truncated > 0 {
         warnings.push(format!(
             "{truncated} walks were cut off after {LONGEST} reflections: what they still carried is missing"
@@ -149,6 +168,7 @@ fn run_with<const N: usize>(
         complete: stop != Stop::Interrupted,
         stop,
         relative_error_max,
+        energy: ledger.energy(engine.passes.main.materials),
         warnings,
     }
 }

@@ -148,6 +148,11 @@ impl<'a> Walk<'a> {
         self.connection(self.origin, normal, 1.0, Choice::Areas)
     }
 
+    /// Where the walk goes on from, and its direction: of one that has left the scene, the ray on which it left.
+    pub(crate) fn ray(&self) -> (DVec3, DVec3) {
+        (self.origin, self.direction)
+    }
+
     /// Appends the next vertices to `path`; false once the walk has ended.
     pub(crate) fn advance(&mut self, path: &mut Path<'a>) -> bool {
         while path.len() < PIECE {

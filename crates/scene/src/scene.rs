@@ -120,6 +120,12 @@ impl Scene {
         })
     }
 
+    /// Whether the surfaces close the scene, as far as can be seen from its free sensor points.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        crate::check::escaping(&self.surfaces, &self.sensors) <= 0.0
+    }
+
     /// Representation to run with: the one asked for, else the one needed.
     #[must_use]
     pub fn representation(&self) -> Representation {
