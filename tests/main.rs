@@ -12,6 +12,10 @@ mod cie;
 mod unit_room;
 // Stokes vectors: chains of mirrors, analysers, frames.
 mod polarisation;
+// Counting in cells, the baseline.
+mod direct;
+// Where the flux goes.
+mod ledger;
 // More components than a scene requires change nothing.
 mod representations;
 // The same bytes whatever the threads, the steps and the interruptions.

@@ -40,7 +40,46 @@ struct Summary<'a> {
     repeat: &'a str,
     relative_error_max: f64,
     techniques: Techniques,
+    energy: Energy<'a>,
     warnings: &'a [String],
+}
+
+/// Where the emitted flux goes, in the scene's unit.
+#[derive(Serialize)]
+struct Energy<'a> {
+    emitted: f64,
+    absorbed: f64,
+    escaped: f64,
+    truncated: f64,
+    /// Standard error of emitted − absorbed − escaped − truncated.
+    se: f64,
+    materials: Vec<Absorbed<'a>>,
+}
+
+/// What one material absorbs.
+#[derive(Serialize)]
+struct Absorbed<'a> {
+    name: &'a str,
+    absorbed: f64,
+    se: f64,
+}
+
+impl<'a> Energy<'a> {
+    fn of(energy: &'a malus_estimator::Energy) -> Self {
+        let materials = energy.by_material.iter().map(|it| Absorbed {
+            name: &it.material,
+            absorbed: it.flux,
+            se: it.standard_error,
+        });
+        Self {
+            emitted: energy.emitted,
+            absorbed: energy.absorbed,
+            escaped: energy.escaped,
+            truncated: energy.truncated,
+            se: energy.standard_error,
+            materials: materials.collect(),
+        }
+    }
 }
 
 /// What each way of finding light has brought, as shares of S0 summed over the free sensor points.
@@ -94,6 +133,7 @@ pub fn json(
             met: results.shares.met,
             local: results.shares.local,
         },
+        energy: Energy::of(&results.energy),
         warnings: &circumstances.warnings,
     };
     let mut text = serde_json::to_vec_pretty(&summary)?;

@@ -15,14 +15,7 @@ const TRUSTED: f64 = 0.02;
 pub(crate) fn techniques(asked: Estimator, receivers: &[Receiver]) -> (Techniques, &'static str) {
     let joined = receivers.iter().any(Receiver::is_irradiance);
     match asked {
-        Estimator::Local => (
-            Techniques {
-                mirrored: false,
-                local: 1.0,
-                gather: false,
-            },
-            "asked for",
-        ),
+        Estimator::Local | Estimator::Direct => (Techniques::ALONE, "asked for"),
         Estimator::Gather => (
             Techniques {
                 mirrored: false,
@@ -31,7 +24,7 @@ pub(crate) fn techniques(asked: Estimator, receivers: &[Receiver]) -> (Technique
             },
             "asked for",
         ),
-        Estimator::Auto | Estimator::Direct => (
+        Estimator::Auto => (
             Techniques {
                 mirrored: true,
                 local: if joined { 1.0 } else { 0.0 },
@@ -106,6 +99,8 @@ pub(crate) fn blind_spots(medium: &Medium, estimator: Estimator) -> Vec<String> 
         Estimator::Local => vec![format!(
             "local: light whose last reflection before the sensor is mirror-like is missing (off {mirrors})"
         )],
+        // What is counted is counted by whatever way it came.
+        Estimator::Direct => Vec::new(),
         Estimator::Gather if sources > 0.0 => vec![format!(
             "gather: light of point, spot and distant sources ({:.1} % of the flux) that a mirror-like reflection \
              (off {mirrors}) sends on to a sensor or to a diffuse surface is missing",

@@ -170,6 +170,19 @@ impl<'a> Emitters<'a> {
         entries.checked_sub(1).map_or(0.0, |i| self.cumulated[i])
     }
 
+    /// Flux that leaves the emitters, in unit: of what nothing hides; of parallel light, what passes through the great
+    /// circle of the scene.
+    #[must_use]
+    pub(crate) fn exposed_flux(&self) -> f64 {
+        let exposed =
+            |&triangle: &u32| self.emission(triangle).0 * self.surfaces.exposed_area(triangle);
+        let sources = self
+            .sources
+            .iter()
+            .map(|source| source_flux(source, self.surfaces));
+        self.triangles.iter().map(exposed).chain(sources).sum()
+    }
+
     /// What a walk may bring that meets emitting surfaces by chance.
     #[must_use]
     pub(crate) fn unmet(&self) -> Unmet {

@@ -1,5 +1,6 @@
 //! What a run works with: the walks it takes, and the sums they go to.
 
+use crate::direct::{Cells, direct};
 use crate::gather::gather;
 use crate::local::local;
 use crate::pass::{Channels, Effort, Passes};
@@ -22,6 +23,8 @@ pub(crate) struct Engine<'a, const N: usize> {
     pub channels: Channels,
     /// The sensors.
     pub receivers: &'a [Receiver],
+    /// The cells in which `direct` counts, where that was asked for.
+    pub cells: Option<&'a Cells>,
     /// Seed of all random numbers.
     pub seed: u64,
 }
@@ -43,7 +46,12 @@ impl<const N: usize> Engine<'_, N> {
     /// Walks a replica that make up one step.
     #[must_use]
     pub(crate) fn step(&self) -> u64 {
-        (STEP / (u64::from(REPLICAS) * self.receivers.len().max(1) as u64)).max(1)
+        // A walk that is only counted costs the same however many sensors there are.
+        let joined = match self.cells {
+            Some(_) => 1,
+            None => self.receivers.len().max(1) as u64,
+        };
+        (STEP / (u64::from(REPLICAS) * joined)).max(1)
     }
 
     /// Takes every replica to `until` walks. Each sum is added to by one task, in the order of the walks.
@@ -54,6 +62,11 @@ impl<const N: usize> Engine<'_, N> {
             .into_par_iter()
             .map(|replica| {
                 let mut effort = Effort::default();
+                if let Some(cells) = self.cells {
+                    effort += self.advance_direct(cells, replica, until);
+                    replica.points = until;
+                    return effort;
+                }
                 if techniques.local > 0.0 {
                     effort += self.advance_local(replica, until);
                 }
@@ -80,6 +93,19 @@ impl<const N: usize> Engine<'_, N> {
             stream,
             replica.points..until,
             &mut replica.sums[self.length()..],
+        )
+    }
+
+    fn advance_direct(&self, cells: &Cells, replica: &mut Replica, until: u64) -> Effort {
+        let stream = Stream::new(self.seed, replica.id);
+        direct::<N>(
+            &self.passes,
+            &self.channels,
+            self.receivers,
+            cells,
+            stream,
+            replica.points..until,
+            &mut replica.sums,
         )
     }
 

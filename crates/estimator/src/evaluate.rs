@@ -299,11 +299,11 @@ impl<const N: usize> Carrying<N> {
     /// Passes the vertices of a walk; `told` is given the number of each and the flux that it scatters.
     pub(crate) fn follow(
         &mut self,
-        path: &Path,
+        path: &[Vertex],
         materials: &[Material],
         mut told: impl FnMut(usize, f64),
     ) {
-        for (index, vertex) in path.vertices.iter().enumerate() {
+        for (index, vertex) in path.iter().enumerate() {
             if vertex.black {
                 return;
             }
@@ -429,4 +429,61 @@ fn delivered<const N: usize>(
         light = Some((next, basis));
     }
     at_sensor(receiver, direction, light)
+}
+
+impl<const N: usize> Carrying<N> {
+    /// Flux under way.
+    #[must_use]
+    pub(crate) fn flux(&self) -> f64 {
+        self.flux * self.light.map_or(1.0, |(light, _)| light.i())
+    }
+
+    /// The flux under way along `direction` as a Stokes vector, in the basis of a sensor that it passes.
+    #[must_use]
+    pub(crate) fn at_sensor(&self, receiver: &Receiver, direction: DVec3) -> Stokes<N, Sensor> {
+        match self.light {
+            Some((light, basis)) if N > 1 => {
+                Rotator::new(&basis, &receiver.basis(direction)) * light * self.flux
+            }
+            _ => Stokes::unpolarised(self.flux()),
+        }
+    }
+
+    /// Flux that a vertex keeps of what arrives there, in expectation: before it is decided how the walk goes on.
+    #[must_use]
+    pub(crate) fn absorbed(&self, vertex: &Vertex, materials: &[Material]) -> f64 {
+        if vertex.black {
+            return self.flux();
+        }
+        let arriving: Stokes<N, Incidence> = match self.light {
+            Some((light, basis)) if N > 1 => {
+                let (incidence, _) = Basis::mirror(vertex.arriving, vertex.normal);
+                Rotator::new(&basis, &incidence) * light
+            }
+            Some((light, _)) => Stokes::unpolarised(light.i()),
+            None => Stokes::unpolarised(1.0),
+        };
+        let material = &materials[vertex.material as usize];
+        self.flux * (arriving.i() - onward(material, vertex, arriving))
+    }
+}
+
+/// Flux that a surface sends on of the light that arrives, in every direction and in every way that it has.
+fn onward<const N: usize>(
+    material: &Material,
+    vertex: &Vertex,
+    arriving: Stokes<N, Incidence>,
+) -> f64 {
+    let optics = &material.optics;
+    let (cos, sin2) = angle_of_incidence(vertex.arriving, vertex.normal);
+    let mirrored = (optics.mirror(cos, sin2) * arriving).i();
+    let through = (optics.through(cos, sin2) * arriving).i();
+    let scattering = optics.scattering();
+    if scattering <= 0.0 {
+        return mirrored + through;
+    }
+    // The albedo is the scattering times the mean of what enters and the like mean of what leaves.
+    let leaving = (optics.albedo() / scattering).sqrt();
+    let taken = optics.entering::<N>(cos, sin2) * arriving;
+    mirrored + through + scattering * taken * leaving
 }

@@ -6,13 +6,16 @@
 
 mod beam;
 mod choose;
+mod direct;
 mod direction;
 mod emitters;
 mod engine;
 mod evaluate;
 mod exact;
 mod gather;
+mod journey;
 mod launched;
+mod ledger;
 mod local;
 mod lookout;
 mod medium;
@@ -28,6 +31,8 @@ mod statistics;
 mod trace;
 
 pub use picture::{Picture, picture};
-pub use results::{Answer, Group, Paired, Progress, Reading, Results, Shares, Stop};
+pub use results::{
+    Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Results, Shares, Stop,
+};
 pub use run::run;
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};

@@ -45,8 +45,12 @@ pub(crate) fn local<'a, const N: usize>(
                 passes.main,
                 &start,
                 |path, fluxes| {
-                    main.follow(path, passes.main.materials, |i, flux| fluxes[i][0] = flux);
-                    scalar.follow(path, passes.main.materials, |i, flux| fluxes[i][1] = flux);
+                    main.follow(&path.vertices, passes.main.materials, |i, flux| {
+                        fluxes[i][0] = flux
+                    });
+                    scalar.follow(&path.vertices, passes.main.materials, |i, flux| {
+                        fluxes[i][1] = flux
+                    });
                 },
                 |sensor, [one, two], light, scalar| {
                     let sums = &mut sums[sensor * channels.count..];
@@ -59,7 +63,9 @@ pub(crate) fn local<'a, const N: usize>(
                 passes.main,
                 &start,
                 |path, fluxes| {
-                    main.follow(path, passes.main.materials, |i, flux| fluxes[i][0] = flux);
+                    main.follow(&path.vertices, passes.main.materials, |i, flux| {
+                        fluxes[i][0] = flux
+                    });
                 },
                 |sensor, [one], light, _| add(&mut sums[sensor * channels.count..], one, light),
             );
@@ -70,7 +76,9 @@ pub(crate) fn local<'a, const N: usize>(
                 medium,
                 &start,
                 |path, fluxes| {
-                    apart.follow(path, medium.materials, |i, flux| fluxes[i][0] = flux);
+                    apart.follow(&path.vertices, medium.materials, |i, flux| {
+                        fluxes[i][0] = flux
+                    });
                 },
                 |sensor, [one], [light], _| sums[sensor * channels.count + channel] += one * light,
             );

@@ -8,7 +8,7 @@ use malus_scene::Estimator;
 pub struct Results {
     /// One entry a sensor group of the scene, in its order; inside, one reading a sensor point.
     pub groups: Vec<Group>,
-    /// Walks taken: in all for `local`, at each sensor point for `gather`, both for `auto`.
+    /// Walks taken: in all for `local` and `direct`, at each sensor point for `gather`, both for `auto`.
     /// Given as `--samples`, it repeats this run to the byte.
     pub samples: u64,
     /// Degrees of freedom of every standard error: the number of replicas less one.
@@ -29,6 +29,8 @@ pub struct Results {
     pub relative_error_max: f64,
     /// What each way of finding light has brought of S0.
     pub shares: Shares,
+    /// Where the emitted flux goes, in the main model.
+    pub energy: Energy,
     /// Paths that the estimator cannot see, walks that were truncated.
     pub warnings: Vec<String>,
 }
@@ -108,6 +110,42 @@ pub struct Paired {
     pub difference: f64,
     /// Standard error of the difference, from paired replicas.
     pub difference_standard_error: f64,
+}
+
+/// Where the emitted flux goes, in the scene's unit: from walks of its own, few beside those of the run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Energy {
+    /// Flux of all emitters, exact; of parallel light, what passes through the great circle of the scene.
+    pub emitted: f64,
+    /// Flux absorbed by surfaces.
+    pub absorbed: f64,
+    /// Flux that leaves the scene; of parallel light also what passes it by.
+    pub escaped: f64,
+    /// Flux of walks that were cut off.
+    pub truncated: f64,
+    /// Standard error of [`Energy::missing`].
+    pub standard_error: f64,
+    /// What each material of the scene absorbs.
+    pub by_material: Vec<Absorbed>,
+}
+
+impl Energy {
+    /// Emitted flux that is neither absorbed nor escaped nor truncated: 0 but for chance.
+    #[must_use]
+    pub fn missing(&self) -> f64 {
+        self.emitted - self.absorbed - self.escaped - self.truncated
+    }
+}
+
+/// What a material absorbs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Absorbed {
+    /// Its name, and where its values are those of one object the name of that in brackets.
+    pub material: String,
+    /// Absorbed flux, in the scene's unit.
+    pub flux: f64,
+    /// Its standard error.
+    pub standard_error: f64,
 }
 
 /// What ended a run.

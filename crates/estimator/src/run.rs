@@ -1,9 +1,11 @@
 //! A run: replicas taken further in steps until a stopping rule holds.
 
 use crate::choose::{blind_spots, erratic, techniques};
+use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::exact;
+use crate::ledger::Ledger;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
 use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
@@ -11,7 +13,7 @@ use crate::results::{Answer, Progress, Results, Stop};
 use crate::statistics::REPLICAS;
 use crate::trace::LONGEST;
 use malus_optics::Representation;
-use malus_scene::{Model, Scene, Settings};
+use malus_scene::{Estimator, Model, Scene, Settings};
 
 /// Walks a replica before the first checkpoint: fewer would not tell an error from luck.
 const FIRST_CHECKPOINT: u64 = 16;
@@ -71,18 +73,29 @@ fn run_with<const N: usize>(
         apart: apart.as_ref().map(|apart| apart.medium(scene, &emitters)),
         techniques,
     };
+    let cells = (settings.estimator == Estimator::Direct).then(|| {
+        let side = settings.cell.unwrap_or(direct::SIDE);
+        Cells::new(&scene.surfaces, &receivers, side)
+    });
     let engine = Engine::<N> {
         passes,
         channels,
         receivers: &receivers,
+        cells: cells.as_ref(),
         seed: settings.seed,
     };
-    let exact = exact::from_sources::<N>(&passes.main, &receivers);
+    let exact = match cells {
+        // Counted like all other light.
+        Some(_) => vec![[0.0; N]; receivers.len()],
+        None => exact::from_sources::<N>(&passes.main, &receivers),
+    };
     // Light in mirrors that nothing looks into is met by chance, or not yet.
     let unseen = passes.media().any(|medium| {
         has_mirrors(medium.materials) && !(techniques.mirrored && medium.mirrors.is_complete())
     });
-    let unmet = if unseen && techniques.gather {
+    let unmet = if let Some(cells) = &cells {
+        direct::unmet(&passes.main, cells)
+    } else if unseen && techniques.gather {
         emitters.unmet()
     } else {
         Unmet::default()
@@ -132,6 +145,7 @@ fn run_with<const N: usize>(
         }
     };
 
+    let ledger = Ledger::keep(&engine, settings.estimator, taken);
     let relative_error_max = readings.relative_error(&tally);
     // The scalar model beside the diffuse one has mirrors of its own.
     let mut warnings: Vec<String> = engine
@@ -140,7 +154,12 @@ fn run_with<const N: usize>(
         .flat_map(|medium| blind_spots(medium, settings.estimator))
         .collect();
     warnings.extend(erratic(&engine, settings.estimator));
-    warnings.extend(exact::singular(&engine.passes.main, &receivers));
+    if let Some(cells) = &cells {
+        warnings.push(direct::warning(cells));
+    } else {
+        warnings.extend(exact::singular(&engine.passes.main, &receivers));
+    }
+    warnings.extend(ledger.leak(scene));
     if truncated > 0 {
         warnings.push(format!(
             "{truncated} walks were cut off after {LONGEST} reflections: what they still carried is missing"
@@ -158,6 +177,7 @@ fn run_with<const N: usize>(
         complete: stop != Stop::Interrupted,
         stop,
         relative_error_max,
+        energy: ledger.energy(engine.passes.main.materials),
         warnings,
     }
 }

@@ -33,6 +33,15 @@ pub(crate) struct Techniques {
     pub gather: bool,
 }
 
+impl Techniques {
+    /// Walks from emitters with nothing beside them.
+    pub(crate) const ALONE: Self = Self {
+        mirrored: false,
+        local: 1.0,
+        gather: false,
+    };
+}
+
 /// How a walk goes on at a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Event {
@@ -213,6 +222,11 @@ impl<'a> Walk<'a> {
         {
             self.connect(path, lookout.viewer, lookout.choice, 1.0, &|_| 0.0);
         }
+    }
+
+    /// Where the walk goes on from, and its direction: of one that has left the scene, the ray on which it left.
+    pub(crate) fn ray(&self) -> (DVec3, DVec3) {
+        (self.origin, self.direction)
     }
 
     /// Appends the next vertices to `path`; false once the walk has ended.

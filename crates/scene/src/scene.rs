@@ -132,6 +132,17 @@ impl Scene {
         })
     }
 
+    /// Whether the surfaces close the scene, as far as can be seen from its free sensor points.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        !crate::leaks::any(
+            &self.surfaces,
+            &self.materials,
+            &self.sensors,
+            &self.cameras,
+        )
+    }
+
     /// Representation to run with: the one asked for, else the one needed.
     #[must_use]
     pub fn representation(&self) -> Representation {
