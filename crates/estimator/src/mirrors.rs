@@ -7,6 +7,7 @@
 //! tell once the chain is chosen.
 
 use crate::beam::Beam;
+use crate::direction::{cosine_weighted, in_cone};
 use crate::pass::is_mirrorlike;
 use crate::random::{Fresh, Uniforms};
 use glam::DVec3;
@@ -23,9 +24,8 @@ const LEAST: f64 = 1e-4;
 /// Share of all directions below which a beam is not followed any further.
 const NARROWEST: f64 = 1e-10;
 
-/// Mirrors of a chain up to which every chain drawn is tested; of longer ones as many as keeps the rays per chain drawn
-/// constant.
-const TESTED: f64 = 3.0;
+/// Chains of so many mirrors are all tested by rays, of longer ones as many as keeps the rays for one drawn constant.
+const TESTED: f64 = 6.0;
 
 /// Longest chain that is drawn by its beam.
 const LONGEST_BEAM: usize = 3;
@@ -177,40 +177,72 @@ impl Mirrors {
         if self.is_empty() || look >= look_odds {
             return;
         }
-        let direction = crate::direction::cosine_weighted(viewer.normal, [s, t]);
+        let direction = cosine_weighted(viewer.normal, [s, t]);
         let mut ray = Ray::new(viewer, direction);
-        let mut view = Some(View::new(viewer));
-        // Probabilities that the ray is followed so far, and that it took the choices that it did.
+        let mut view = View::new(viewer);
+        // Probability that a ray through the chain so far is followed through it, by the choices that this one took.
         let mut followed = look_odds;
-        let mut choices = 1.0;
         for order in 0..LONGEST_CHAIN {
             let [last, ..] = uniforms.in_chain(depth, order);
             let [test, onward, select, _] = uniforms.in_chain(depth, order | 1 << 31);
-            let length = order + 1;
-            let odds = tested(length);
-            let beam = target.beam(length as usize);
-            if let (true, true, Some(view)) = (beam, test < odds, &view)
-                && let Some((facet, share)) = self.last(view, target, last)
+            let odds = tested(order + 1);
+            if test < odds
+                && let Some((facet, share)) = self.last(&view, target, last)
             {
                 let mut facets = view.facets.clone();
                 facets.push(facet);
-                let drawn = view.share * odds * share * followed * choices;
-                found(Drawn::Chain(facets), 1.0 / drawn);
+                found(
+                    Drawn::Chain(facets),
+                    1.0 / (view.share * odds * share * followed),
+                );
+            }
+            if !target.beam(order as usize + 2) {
+                break;
             }
             let Some((facet, chosen)) = self.met(&ray, select) else {
                 return;
             };
             let goes_on = self.onward(facet, ray.direction);
-            let plane = self.facet(facet);
-            if beam {
-                view = view.and_then(|view| view.behind(self, facet));
-                if view.is_none() && target.beam(length as usize + 1) {
-                    return;
-                }
+            if onward >= goes_on {
+                break;
             }
-            choices *= chosen;
-            ray.reflect(facet, plane);
-            if !beam && test < odds {
+            let Some(next) = view.behind(self, facet) else {
+                break;
+            };
+            followed *= chosen * goes_on;
+            view = next;
+            ray.reflect(facet, self.facet(facet));
+        }
+        if target.finite {
+            self.draw_images(viewer, target, uniforms, depth, look_odds, found);
+        }
+    }
+
+    /// The part of [`draw`](Self::draw) for chains too long for their beams.
+    ///
+    /// Far images stand low above a surface that sees many of them, so the ray is drawn evenly over the hemisphere.
+    fn draw_images(
+        &self,
+        viewer: &Viewer,
+        target: &Target,
+        uniforms: Uniforms,
+        depth: u32,
+        look_odds: f64,
+        mut found: impl FnMut(Drawn, f64),
+    ) {
+        let [s, t, ..] = uniforms.in_chain(depth, 1 << 30);
+        let direction = in_cone(viewer.normal, 0.0, [s, t]);
+        let mut ray = Ray::new(viewer, direction);
+        let mut followed = look_odds;
+        for order in 0..LONGEST_CHAIN {
+            let [test, onward, select, _] = uniforms.in_chain(depth, order | 3 << 30);
+            let Some((facet, _)) = self.met(&ray, select) else {
+                return;
+            };
+            let goes_on = self.onward(facet, ray.direction);
+            ray.reflect(facet, self.facet(facet));
+            let odds = tested(order + 1);
+            if !target.beam(ray.facets.len()) && test < odds {
                 let image = self.image(&ray.facets, target);
                 let tries = uniforms.fresh(depth, order);
                 if let Some(inverse) = self.tried(viewer, target, direction, image, &ray, tries) {
@@ -225,7 +257,7 @@ impl Mirrors {
         }
     }
 
-    /// One over the probability with which a direction of density cos θ/π lies in the cone about an image and leads to it
+    /// One over the probability with which a direction of the hemisphere lies in the cone about an image and leads to it
     /// as `ray` does, without bias; `None` where `direction`, which has led there, lies outside.
     fn tried(
         &self,
@@ -241,13 +273,12 @@ impl Mirrors {
             return None;
         }
         for count in 1..=MOST_TRIES {
-            let [u, v, accept, select] = tries.next();
-            let tried = crate::direction::in_cone(cone.axis, cone.cos, [u, v]);
-            if tried.dot(viewer.normal) <= accept * cone.steepest {
+            let [u, v, mut select, _] = tries.next();
+            let tried = in_cone(cone.axis, cone.cos, [u, v]);
+            if tried.dot(viewer.normal) <= 0.0 {
                 continue;
             }
             let mut retraced = Ray::new(viewer, tried);
-            let mut select = select;
             while retraced.facets.len() < ray.facets.len()
                 && let Some((facet, _)) = self.met(&retraced, select)
             {
@@ -274,18 +305,10 @@ impl Mirrors {
         let distance = span.length();
         let axis = span / distance;
         let sine = (self.spread / distance).min(0.5);
-        let cos = (1.0 - sine * sine).sqrt();
-        let tilt = axis.dot(viewer.normal);
-        // The least angle to the normal in the cone.
-        let steepest = if tilt >= cos {
-            1.0
-        } else {
-            tilt * cos + (1.0 - tilt * tilt).max(0.0).sqrt() * sine
-        };
         Cone {
             axis,
-            cos,
-            steepest: steepest.max(0.0),
+            // As many digits as it takes to tell a narrow cone from none.
+            cos: 1.0 - sine * sine / (1.0 + (1.0 - sine * sine).sqrt()),
         }
     }
 
@@ -487,15 +510,12 @@ impl Ray {
 struct Cone {
     axis: DVec3,
     cos: f64,
-    /// Greatest cosine to the viewer's normal.
-    steepest: f64,
 }
 
 impl Cone {
-    /// Solid angle × greatest cosine/π.
+    /// Solid angle as a share of the hemisphere's.
     fn share(&self) -> f64 {
-        let sine2 = (1.0 - self.cos) * (1.0 + self.cos);
-        2.0 * sine2 / (1.0 + self.cos) * self.steepest
+        1.0 - self.cos
     }
 }
 
