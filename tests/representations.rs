@@ -130,7 +130,7 @@ fn intensity_forced_on_a_glossy_scene_is_its_scalar_model() {
     let forced = forced(
         &scene,
         Representation::Intensity,
-        malus_scene::Estimator::Gather,
+        malus_scene::Estimator::Auto,
     );
     for (intensity, linear) in forced.iter().zip(readings(&evaluate(&scene))) {
         assert_eq!(

@@ -4,7 +4,8 @@ use crate::Row;
 use malus_estimator::{Answer, Reading, run};
 use malus_scene::Scene;
 
-fn measured(toml: &str) -> Vec<Reading> {
+/// Readings of a scene given as text.
+pub fn measured(toml: &str) -> Vec<Reading> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, toml).unwrap();

@@ -8,13 +8,13 @@ const HALF: &str = "{ from = [0.1, 0.5, 0], to = [0.5, 0.5, 0], count = 5 }";
 pub fn print() {
     println!("\n## Figure 3 of the paper\n");
     println!(
-        "Illuminance (unit/m² for M = 1) along the floor of the unit room, y = 0.5, by `gather`; the room is symmetric, so half of it is shown."
+        "Illuminance (unit/m² for M = 1) along the floor of the unit room, y = 0.5; the room is symmetric, so half of it is shown."
     );
     println!(
         "*Change of model* compares with the standard diffuse model (ρ = 0.5, no mirror-like part), as the paper's \"more than 20 %\" and \"30 %\" do."
     );
     println!(
-        "*Polarisation* compares with a scalar model of the same Fresnel reflectance, from the same walks; both errors are paired.\nIt comes by walks that met the small lamp by way of two mirrors: where these are few, most of the error is the allowance for what no walk has met yet.\n"
+        "*Polarisation* compares with a scalar model of the same Fresnel reflectance, from the same walks; both errors are paired.\n"
     );
     println!("| a | x | E | change of model, % | polarisation, % | S1/S0, % |");
     println!("|---|---|---|---|---|---|");
@@ -22,7 +22,7 @@ pub fn print() {
         let file = format!("scenes/figure-3/a-{a}.toml");
         for (i, reading) in readings(
             &file,
-            &[("run.samples", "4194304"), ("sensor.floor.line", HALF)],
+            &[("run.samples", "262144"), ("sensor.floor.line", HALF)],
         )
         .iter()
         .take(5)
@@ -38,7 +38,7 @@ pub fn print() {
                 }
             };
             println!(
-                "| {a} | 0.{} | {s0:.6} ± {:.6} | {} | {} | {} |",
+                "| {a} | 0.{} | {s0:.7} ± {:.7} | {} | {} | {} |",
                 i + 1,
                 reading.standard_error[0],
                 percent(
