@@ -69,7 +69,7 @@ fn taken_in<const N: usize>(
 pub(crate) struct Gathering<'r, const N: usize> {
     receiver: &'r Receiver,
     chain: Chain<N>,
-    /// Product of everything passed so far that is a number.
+    /// Product of everything that is a number, since the last diffuse event.
     weight: f64,
     sum: Stokes<N, Sensor>,
     /// S0 of light seen in mirrors, and of emitters met by chance.
@@ -246,7 +246,13 @@ impl<'r, const N: usize> Gathering<'r, N> {
                     self.chain = self
                         .chain
                         .behind(self.receiver, material, vertex, vertex.onward);
-                    self.weight *= scattering / vertex.probability;
+                    // In a number of its own the weight would grow without bound over thousands of events, while what is
+                    // sent on dwindles.
+                    let weight = self.weight * scattering / vertex.probability;
+                    if let Chain::ToDiffuser { leaving, .. } = &mut self.chain {
+                        *leaving = *leaving * weight;
+                        self.weight = 1.0;
+                    }
                 }
                 Event::Mirror | Event::Through => {
                     let step = Step {

@@ -252,9 +252,10 @@ impl<'a> Medium<'a> {
         let mut chain = Vec::new();
         let mut odds = 1.0;
         let (mut from, mut toward) = (viewer.point, start);
-        while let Some((hit, meeting)) = self.meet(from, toward) {
+        while chain.len() < mirrors {
+            let (hit, meeting) = self.meet(from, toward)?;
             if hit.distance >= left {
-                break;
+                return None;
             }
             left -= hit.distance;
             let (mirror, through) = meeting.matrices();
@@ -266,7 +267,7 @@ impl<'a> Medium<'a> {
                 chain.push(meeting.facet?);
                 (mirror, chances.mirror)
             };
-            if chance <= 0.0 || meeting.black() || chain.len() > mirrors {
+            if chance <= 0.0 || meeting.black() {
                 return None;
             }
             odds *= chance;
@@ -282,15 +283,19 @@ impl<'a> Medium<'a> {
                 toward = (toward + meeting.normal * (2.0 * meeting.angle.0)).normalize();
             }
         }
-        let there =
-            chain.len() == mirrors && self.mirrors.same(self.mirrors.image(&chain, target), image);
+        if !self.mirrors.same(self.mirrors.image(&chain, target), image) {
+            return None;
+        }
+        // Rays leave mirrors by an offset, so after many of them `left` no longer tells the target from the surface that
+        // it lies on: the last leg leads to the target itself.
+        let passage = self.passage(from, Some(target.at), toward, steps)?;
         let way = Way {
             start,
             square: span.length_squared(),
             arriving: toward,
-            odds,
+            odds: odds * passage.odds,
         };
-        there.then_some((way, chain))
+        Some((way, chain))
     }
 
     /// The way from a viewer to a target as it was drawn, and the probability of its mirrors; `None` where there is none.
