@@ -9,6 +9,9 @@ const SEEDS: u64 = 4000;
 /// Student's t for 63 degrees of freedom at 97.5 %.
 const T: f64 = 1.998_340_5;
 
+/// Value and standard error of something that is read.
+type Quantity = fn(&Reading) -> (f64, f64);
+
 /// The paper's room with another material or another sensor.
 fn room(material: &str, sensor: &str) -> Scene {
     let folder = tempfile::tempdir().unwrap();
@@ -80,7 +83,7 @@ fn report(name: &str, scene: &Scene) {
     };
     let runs: Vec<Reading> = (1..=SEEDS).map(|seed| read(1024, seed)).collect();
     let long = read(1 << 22, 0);
-    let quantities: [(&str, fn(&Reading) -> (f64, f64)); 3] = [
+    let quantities: [(&str, Quantity); 3] = [
         ("S0", |r| (r.stokes[0], r.standard_error[0])),
         ("S1", |r| (r.stokes[1], r.standard_error[1])),
         ("S0 − scalar S0", |r| {

@@ -51,7 +51,7 @@ impl Beam {
             }
         }
         drop_doubles(&mut edges);
-        (edges.len() > 2).then(|| Self {
+        (edges.len() > 2).then_some(Self {
             edges,
             turn,
             ..*self
