@@ -106,7 +106,7 @@ pub(crate) fn blind_spots(medium: &Medium, estimator: Estimator) -> Vec<String> 
              (off {mirrors}) sends on to a sensor or to a diffuse surface is missing",
             100.0 * sources
         )],
-        _ if sources > 0.0 && !medium.mirrors.is_complete() => vec![format!(
+        _ if sources > 0.0 && medium.mirrors.unseen() > 0.0 => vec![format!(
             "light of point, spot and distant sources ({:.1} % of the flux) is missing where it is mirrored by small or \
              curved surfaces on its way and again just before a sensor (off {mirrors})",
             100.0 * sources

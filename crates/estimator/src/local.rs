@@ -258,6 +258,7 @@ impl Joining<'_> {
         let target = Target {
             at: receiver.origin,
             finite: true,
+            area: false,
             strength: &strength,
         };
         medium

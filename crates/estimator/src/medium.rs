@@ -343,6 +343,7 @@ pub(crate) fn target<'t>(
     Target {
         at: site.from.map_or(-site.direction(), |from| from + aside),
         finite: site.from.is_some(),
+        area: site.area_density().is_some(),
         strength,
     }
 }

@@ -51,11 +51,11 @@ const ONWARD: f64 = 2.0;
 /// Least of that probability: the light may meet the mirror at a far more grazing angle than the ray.
 const LEAST_ONWARD: f64 = 0.05;
 
-/// Probability with which a vertex looks into mirrors, relative to what the best of them reflects of diffuse light.
+/// Probability with which a vertex looks into mirrors, relative to the share of diffuse light that they reflect.
 const LOOK: f64 = 4.0;
 
 /// Least of that probability.
-const LEAST_LOOK: f64 = 0.25;
+const LEAST_LOOK: f64 = 0.1;
 
 /// The flat mirrors of a scene, as one model has them.
 pub(crate) struct Mirrors {
@@ -64,8 +64,8 @@ pub(crate) struct Mirrors {
     optics: Vec<malus_optics::Material>,
     /// Probability with which a vertex of a walk looks into mirrors.
     look: f64,
-    /// Whether all that is mirror-like belongs to some facet.
-    complete: bool,
+    /// Diffuse light that is mirrored by what belongs to no facet, as a share of what meets all surfaces.
+    unseen: f64,
     /// Radius of the cone of directions about an image, where it stands, in m.
     spread: f64,
     /// Distance within which two images are one, in m.
@@ -79,6 +79,8 @@ pub(crate) struct Target<'t> {
     pub at: DVec3,
     /// False at infinity.
     pub finite: bool,
+    /// Whether it is a point of a surface that walks may meet by chance, too.
+    pub area: bool,
     /// Light across the beam that leaves the target along a unit vector and goes a way of the given square.
     pub strength: &'t dyn Fn(DVec3, f64) -> f64,
 }
@@ -115,11 +117,22 @@ impl Mirrors {
             .iter()
             .map(|facet| materials[surfaces.surface(facet.triangle) as usize].optics)
             .collect();
-        let best = optics.iter().map(reflectance).fold(0.0, f64::max);
-        let count = surfaces.len() as u32;
+        let (mut seen, mut unseen, mut area) = (0.0, 0.0, 0.0);
+        let reflectances: Vec<f64> = materials.iter().map(|m| reflectance(&m.optics)).collect();
+        for triangle in 0..surfaces.len() as u32 {
+            let own = surfaces.triangle(triangle).area();
+            area += own;
+            let mirrored = own * reflectances[surfaces.surface(triangle) as usize];
+            if facets.of(triangle).is_some() {
+                seen += mirrored;
+            } else {
+                unseen += mirrored;
+            }
+        }
+        let share = |part: f64| if area > 0.0 { part / area } else { 0.0 };
         Self {
-            complete: (0..count).all(|t| !mirrorlike(t) || facets.of(t).is_some()),
-            look: (LOOK * best).clamp(LEAST_LOOK, 1.0),
+            unseen: share(unseen),
+            look: (LOOK * share(seen)).clamp(LEAST_LOOK, 1.0),
             facets,
             optics,
             spread: SPREAD * radius,
@@ -152,9 +165,9 @@ impl Mirrors {
         self.facets.list().is_empty()
     }
 
-    /// Whether everything mirror-like can be looked into.
-    pub(crate) fn is_complete(&self) -> bool {
-        self.complete
+    /// Diffuse light that is mirrored by what cannot be looked into, as a share of what meets all surfaces.
+    pub(crate) fn unseen(&self) -> f64 {
+        self.unseen
     }
 
     /// Draws ways by mirrors that may lead the viewer to the target; `found` is given each, with one over the probability
@@ -213,7 +226,7 @@ impl Mirrors {
             view = next;
             ray.reflect(facet, self.facet(facet));
         }
-        if target.finite {
+        if target.has_images() {
             self.draw_images(viewer, target, uniforms, depth, look_odds, found);
         }
     }
@@ -470,9 +483,14 @@ impl Mirrors {
 }
 
 impl Target<'_> {
-    /// Whether a chain of so many mirrors is drawn by its beam.
+    /// Whether a chain of so many mirrors is drawn by its beam: what is met by chance, too, has a bound to its weight.
     fn beam(&self, length: usize) -> bool {
-        length <= LONGEST_BEAM || !self.finite
+        length <= LONGEST_BEAM || !self.has_images()
+    }
+
+    /// Whether it has images to be drawn, of which each point sees one at most in one direction.
+    fn has_images(&self) -> bool {
+        self.finite && !self.area
     }
 }
 

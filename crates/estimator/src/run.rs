@@ -6,6 +6,7 @@ use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::exact;
 use crate::ledger::Ledger;
+use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
 use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
@@ -89,16 +90,10 @@ fn run_with<const N: usize>(
         Some(_) => vec![[0.0; N]; receivers.len()],
         None => exact::from_sources::<N>(&passes.main, &receivers),
     };
-    // Light in mirrors that nothing looks into is met by chance, or not yet.
-    let unseen = passes.media().any(|medium| {
-        has_mirrors(medium.materials) && !(techniques.mirrored && medium.mirrors.is_complete())
-    });
-    let unmet = if let Some(cells) = &cells {
-        direct::unmet(&passes.main, cells)
-    } else if unseen && techniques.gather {
-        emitters.unmet()
-    } else {
-        Unmet::default()
+    let unmet = match &cells {
+        Some(cells) => direct::unmet(&passes.main, cells),
+        None if techniques.gather => unmet(&passes, &emitters),
+        None => Unmet::default(),
     };
     let readings = Readings::new(scene, channels, &receivers, &exact, unmet);
 
@@ -179,6 +174,28 @@ fn run_with<const N: usize>(
         relative_error_max,
         energy: ledger.energy(engine.passes.main.materials),
         warnings,
+    }
+}
+
+/// What may lie in mirrors that nothing looks into, and has not been met by chance yet.
+fn unmet(passes: &Passes, emitters: &Emitters) -> Unmet {
+    let share = |medium: &Medium| {
+        if passes.techniques.mirrored {
+            medium.mirrors.unseen()
+        } else {
+            f64::from(u8::from(has_mirrors(medium.materials)))
+        }
+    };
+    let share = passes.media().map(share).fold(0.0, f64::max);
+    let unmet = emitters.unmet();
+    if share > 0.0 {
+        // The most that there can be of it is what such mirrors can send on.
+        Unmet {
+            most: unmet.most * share,
+            ..unmet
+        }
+    } else {
+        Unmet::default()
     }
 }
 

@@ -25,6 +25,10 @@ pub struct Facet {
     pub area: f64,
     /// Its largest triangle.
     pub triangle: u32,
+    /// Centre of the hull and square of the distance of its farthest corner, in m and m².
+    centre: (DVec3, f64),
+    /// Normals in the plane, inwards across each edge of the hull, and the edges' heights along them.
+    edges: Vec<(DVec3, f64)>,
 }
 
 /// The largest flat patches among some of the triangles of a mesh.
@@ -54,19 +58,22 @@ impl Facet {
     #[must_use]
     #[inline]
     pub fn crossing(&self, origin: DVec3, span: DVec3) -> Option<f64> {
-        let share = (self.height - origin.dot(self.normal)) / span.dot(self.normal);
-        if !(share > 0.0 && share.is_finite()) {
+        let (depth, along) = (self.height - origin.dot(self.normal), span.dot(self.normal));
+        // Most facets lie behind.
+        if depth * along <= 0.0 {
+            return None;
+        }
+        let share = depth / along;
+        if !share.is_finite() {
             return None;
         }
         let point = origin + span * share;
-        let mut last = self.hull[self.hull.len() - 1];
-        for &corner in &self.hull {
-            if (corner - last).cross(point - last).dot(self.normal) < 0.0 {
-                return None;
-            }
-            last = corner;
+        let (centre, reach) = self.centre;
+        if point.distance_squared(centre) > reach {
+            return None;
         }
-        Some(share)
+        let inside = |&(inward, height): &(DVec3, f64)| point.dot(inward) >= height;
+        self.edges.iter().all(inside).then_some(share)
     }
 }
 
@@ -111,10 +118,13 @@ impl Facets {
                 of[triangle as usize] = number;
             }
             let normal = surfaces.normal(patch[0]);
+            let hull = hull(surfaces, patch, normal);
             list.push(Facet {
                 normal,
                 height: surfaces.triangle(patch[0]).vertices[0].dot(normal),
-                hull: hull(surfaces, patch, normal),
+                centre: ball(&hull),
+                edges: edges(&hull, normal),
+                hull,
                 area: *area,
                 triangle: patch[0],
             });
@@ -219,6 +229,24 @@ fn hull(surfaces: &Surfaces, patch: &[u32], normal: DVec3) -> Vec<DVec3> {
     }
     let lifted = corners.iter().map(|p| origin + x * p.x + y * p.y);
     lifted.collect()
+}
+
+/// A ball about a polygon: its centre and the square of its radius.
+fn ball(hull: &[DVec3]) -> (DVec3, f64) {
+    let centre = hull.iter().sum::<DVec3>() / hull.len() as f64;
+    let squares = hull.iter().map(|corner| corner.distance_squared(centre));
+    // A little larger, so that rounding leaves no corner outside.
+    (centre, squares.fold(0.0, f64::max) * (1.0 + 1e-9))
+}
+
+/// Inward normals of the edges of a polygon that runs anticlockwise about `normal`, with the edges' heights along them.
+fn edges(hull: &[DVec3], normal: DVec3) -> Vec<(DVec3, f64)> {
+    let next = hull.iter().cycle().skip(1);
+    let edge = |(&from, &to): (&DVec3, &DVec3)| {
+        let inward = normal.cross(to - from).normalize();
+        (inward, from.dot(inward))
+    };
+    hull.iter().zip(next).map(edge).collect()
 }
 
 /// The convex hull of points, anticlockwise (Andrew's monotone chain).
