@@ -52,7 +52,7 @@ fn a_coat_over_black_is_a_mirror() {
 /// A coat over a base that loses nothing loses nothing: between such walls a black emitter fills the view (Kirchhoff).
 #[test]
 fn a_coat_over_white_loses_nothing() {
-    for (n, ceiling) in [("1", 0.02), ("1.5", 0.02), ("100", 0.06)] {
+    for (n, ceiling) in [("1", 0.02), ("1.5", 0.03), ("100", 0.06)] {
         let toml = format!(
             "{}{}
             [material.wall]

@@ -39,15 +39,15 @@ fn values_beside_walls_are_those_of_long_runs_from_the_sensors_alone() {
 }
 
 /// Joining walks from the lamp to a sensor beside a wall has no bound of its own; weighted against the walks from the
-/// sensor it never makes them worse. The spread of a ratio over 16 seeds is 6 %.
+/// sensor it does not make them worse. A mean of four seeds is uncertain by 9 %, a ratio of two by 13 %.
 #[test]
 fn walks_from_both_ends_are_nowhere_worse_than_those_from_the_sensor() {
-    for a in [0.0, 0.3, 0.6, 0.9, 1.0] {
-        let both = variances(a, "auto", 8);
-        let gather = variances(a, "gather", 8);
+    for a in [0.0, 0.6, 1.0] {
+        let both = variances(a, "auto", 4);
+        let gather = variances(a, "gather", 4);
         for (point, (both, gather)) in POINTS.iter().zip(both.into_iter().zip(gather)) {
             assert!(
-                both < 1.3 * gather,
+                both < 1.5 * gather,
                 "a = {a} at {point:?}: relative variance {both:.2e} against {gather:.2e}"
             );
         }
