@@ -113,6 +113,7 @@ fn a_room_that_absorbs_nothing_is_refused() {
 /// Nothing ends the walk of a lone sensor between mirrors, where no light is lost and hardly any is found: it is cut off
 /// after 10⁶ events, and the run says so.
 #[test]
+#[ignore = "takes half a minute: 64 walks of a million events"]
 fn walks_without_end_are_cut_off_and_counted() {
     let toml = format!(
         "{}{}
