@@ -10,6 +10,8 @@ mod furnace;
 mod cie;
 // The room of the paper against values from elsewhere.
 mod unit_room;
+// Scales, materials and geometry at the ends of their ranges.
+mod extremes;
 // Stokes vectors: chains of mirrors, analysers, frames.
 mod polarisation;
 // Counting in cells, the baseline.

@@ -1,0 +1,114 @@
+//! Lamps without size, strong and weak ones, and light that grazes.
+
+use super::{cube, sensors, sheet, unit_room};
+use crate::experiment::{assert_estimate, assert_exact, measured, s0};
+use std::f64::consts::PI;
+
+/// E = M A/(π r²) below a lamp of 10⁻⁶ m, hung free or flush with the ceiling.
+#[test]
+fn a_lamp_of_a_micrometre_is_a_point() {
+    for height in [0.9, 1.0] {
+        let toml = format!(
+            "{}{}
+            [material.black]
+            rho = 0
+            [material.lamp]
+            rho = 0
+            exitance = 1e12
+            {}
+            [run]
+            samples = 4096",
+            cube("black", [0.0; 3], [1.0; 3]),
+            sheet(
+                "lamp",
+                [0.5, 0.5, height],
+                [0.0, 1e-6, 0.0],
+                [1e-6, 0.0, 0.0]
+            ),
+            sensors(&[[0.5, 0.5, 0.0]], [0.0, 0.0, 1.0])
+        );
+        let (value, error) = s0(&measured(&toml)[0]);
+        // As seen from 1 m the lamp's own extent is 10⁻¹² of the value.
+        let exact = 1.0 / (PI * height * height);
+        assert!(error < 1e-6 * exact, "{error}");
+        assert_exact("point", value, exact, 5e-6);
+    }
+}
+
+/// Light is linear in what is emitted: the same walks give the same result, scaled.
+#[test]
+fn exitances_of_any_size_scale_the_result() {
+    for a in [0.0, 0.6] {
+        let lit = |exitance: f64| {
+            let material = format!("rho = 0.5\na = {a}");
+            let points = [[0.3, 0.4, 0.0], [0.001, 0.001, 0.0]];
+            let toml = unit_room(&material, 1.0, 0.0, &points, "samples = 4096");
+            measured(&toml.replace("exitance = 1", &format!("exitance = {exitance:?}")))
+        };
+        let one = lit(1.0);
+        for exitance in [1e-12, 1e12] {
+            for (reading, one) in lit(exitance).iter().zip(&one) {
+                assert_exact("S0", reading.stokes[0], exitance * one.stokes[0], 1e-9);
+                assert_exact(
+                    "error",
+                    reading.standard_error[0],
+                    exitance * one.standard_error[0],
+                    1e-6,
+                );
+            }
+        }
+    }
+}
+
+/// Ten to the minus nine radians above the floor: E = E₀ sin α.
+#[test]
+fn light_that_grazes_the_floor_is_as_weak_as_its_sine() {
+    for polarising in ["", "a = 1\nn = 1.5"] {
+        let toml = format!(
+            "{}
+            [material.floor]
+            rho = 0.5
+            {polarising}
+            [[source]]
+            kind = 'distant'
+            direction = [1, 0, -1e-9]
+            irradiance = 1000
+            {}
+            [run]
+            samples = 64",
+            sheet("floor", [-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]),
+            sensors(&[[0.0, 0.0, 0.0], [0.9, 0.3, 0.0]], [0.0, 0.0, 1.0])
+        );
+        for reading in measured(&toml) {
+            assert_exact("grazing", reading.stokes[0], 1e-6, 1e-12);
+        }
+    }
+}
+
+/// The same light on a wall at the end of the floor comes back to it: every value stays finite.
+#[test]
+fn grazing_light_between_glossy_walls_is_finite() {
+    let toml = format!(
+        "{}{}
+        [material.floor]
+        rho = 0.5
+        a = 0.5
+        [[source]]
+        kind = 'distant'
+        direction = [1, 0, -1e-9]
+        irradiance = 1000
+        {}
+        [run]
+        samples = 4096",
+        sheet("floor", [-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]),
+        sheet("floor", [1.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 2.0, 0.0]),
+        sensors(&[[0.0, 0.0, 0.0], [0.999, 0.3, 0.0]], [0.0, 0.0, 1.0])
+    );
+    let readings = measured(&toml);
+    for reading in &readings {
+        super::assert_physical("grazing", reading);
+    }
+    // Right beside the wall, which takes 1000 and scatters (1 − a)ρ = ¼ of it, half a hemisphere is filled with 250.
+    let (value, error) = s0(&readings[1]);
+    assert_estimate("beside the wall", (value, error.hypot(1.0)), 125.0, 0.05);
+}
