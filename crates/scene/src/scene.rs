@@ -103,6 +103,7 @@ impl Scene {
         darkness.mark(&mut sensors);
         warnings.extend(darkness.warnings(&cameras, &sensors, &assembly.objects));
 
+        resolved(path, &surfaces)?;
         without_loss(path, &surfaces, &materials, &sensors, &cameras)?;
         warnings.extend(defects::warnings(
             &flaws,
@@ -169,6 +170,27 @@ fn observers(sensors: &[Sensor], cameras: &[Camera]) -> Vec<DVec3> {
     let points = sensors.iter().flat_map(|sensor| &sensor.points);
     let eyes = cameras.iter().map(|camera| camera.position);
     points.map(|point| point.position).chain(eyes).collect()
+}
+
+/// Surfaces nearer than their tolerance lie in one place: a scene this many times as large or less has no shape left.
+const RESOLVED: f64 = 100.0;
+
+/// Refuses a scene so far from the origin that its surfaces cannot be told apart.
+fn resolved(path: &Path, surfaces: &Surfaces) -> Result<(), Error> {
+    let Some(extent) = extent(surfaces) else {
+        return Ok(());
+    };
+    let (size, tolerance) = (extent.max_element(), surfaces.tolerance());
+    if size > RESOLVED * tolerance {
+        return Ok(());
+    }
+    Err(Error::Conflict {
+        at: path.display().to_string(),
+        reason: format!(
+            "the geometry is {size:.3e} m large and lies {:.3e} m from the origin, where surfaces nearer than {tolerance:.1e} m cannot be told apart; move it to the origin",
+            surfaces.centre().length()
+        ),
+    })
 }
 
 /// Refuses a closed scene in which light is never lost: there is no steady state to compute.
