@@ -69,8 +69,6 @@ fn taken_in<const N: usize>(
 pub(crate) struct Gathering<'r, const N: usize> {
     receiver: &'r Receiver,
     chain: Chain<N>,
-    /// Product of everything that is a number, since the last diffuse event.
-    weight: f64,
     sum: Stokes<N, Sensor>,
     /// S0 of light seen in mirrors, and of emitters met by chance.
     found: [f64; 2],
@@ -186,7 +184,6 @@ impl<'r, const N: usize> Gathering<'r, N> {
         Self {
             receiver,
             chain: Chain::ToSensor(None),
-            weight: 1.0,
             sum: Stokes::unpolarised(0.0),
             found: [0.0; 2],
         }
@@ -222,10 +219,7 @@ impl<'r, const N: usize> Gathering<'r, N> {
                 let direction = -vertex.arriving;
                 let light = emitted(direction, crate::emitters::emitted_state(material));
                 let read = self.chain.pass(self.receiver, direction, light)
-                    * (self.weight
-                        * emission.exitance
-                        * vertex.emission
-                        * self.receiver.per_exitance);
+                    * (emission.exitance * vertex.emission * self.receiver.per_exitance);
                 self.found[1] += read.i();
                 self.sum += read;
             }
@@ -248,21 +242,20 @@ impl<'r, const N: usize> Gathering<'r, N> {
                         .behind(self.receiver, material, vertex, vertex.onward);
                     // In a number of its own the weight would grow without bound over thousands of events, while what is
                     // sent on dwindles.
-                    let weight = self.weight * scattering / vertex.probability;
+                    let weight = scattering / vertex.probability;
                     if let Chain::ToDiffuser { leaving, .. } = &mut self.chain {
                         *leaving = *leaving * weight;
-                        self.weight = 1.0;
                     }
                 }
                 Event::Mirror | Event::Through => {
                     let step = Step {
                         normal: vertex.normal,
                         arriving: vertex.arriving,
-                        matrix: vertex.matrix,
+                        // Divided here: a product of thousands of reflectances has no number, nor has one over it.
+                        matrix: vertex.matrix * (1.0 / vertex.probability),
                         through: vertex.event == Event::Through,
                     };
                     self.chain = self.chain.extended(self.receiver, &step);
-                    self.weight /= vertex.probability;
                 }
             }
         }
@@ -274,8 +267,8 @@ impl<'r, const N: usize> Gathering<'r, N> {
             chain = chain.extended(self.receiver, step);
         }
         let light = emitted(connection.leaving, connection.state);
-        let read = chain.pass(self.receiver, connection.leaving, light)
-            * (self.weight * weight * connection.irradiance);
+        let read =
+            chain.pass(self.receiver, connection.leaving, light) * (weight * connection.irradiance);
         if connection.mirrored {
             self.found[0] += read.i();
         }
@@ -350,13 +343,12 @@ impl<const N: usize> Carrying<N> {
     }
 
     fn pass(&mut self, vertex: &Vertex) {
-        self.flux /= vertex.probability;
         let through = vertex.event == Event::Through;
         self.light = Some(passed(
             self.light,
             vertex.arriving,
             vertex.normal,
-            vertex.matrix,
+            vertex.matrix * (1.0 / vertex.probability),
             through,
         ));
     }

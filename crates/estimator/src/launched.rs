@@ -86,7 +86,12 @@ impl<'a> Launched<'a> {
         };
         let arrived = self.site.launched(self.leaving, self.chain.square()) * cos * self.chain.odds;
         Rival {
-            looked: probability / arrived,
+            // Over thousands of mirrors both may leave the range of numbers: what is never drawn is no rival.
+            looked: if probability > 0.0 {
+                probability / arrived
+            } else {
+                0.0
+            },
             met: area_density.map_or(0.0, |density| 1.0 / density),
             first: true,
             alone: area_density.is_none() && probability <= 0.0,

@@ -172,12 +172,16 @@ impl Lookout {
             _ => 0.0,
         };
         let distance = self.chain.length + hit.distance;
-        // All as densities per solid angle at the last point.
+        // All as densities per solid angle at the last point, divided by that of meeting the light by chance but for the
+        // events on the way: over thousands of them their probability leaves the range of numbers.
         let density = medium.emitters.density(self.choice, exitance);
+        let by_chance = self.diffuse * self.cos / PI;
+        let local = self.local * density;
+        if probability <= 0.0 {
+            return 1.0 / (1.0 + local);
+        }
+        let met = by_chance * self.chain.odds;
         let looked = probability * density * distance * distance / cos;
-        let by_chance = self.cos / PI * self.chain.odds;
-        let met = self.diffuse * by_chance;
-        let local = self.local * self.diffuse * density * by_chance;
-        met / (met + looked + local)
+        met / (met * (1.0 + local) + looked)
     }
 }

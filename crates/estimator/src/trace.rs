@@ -396,6 +396,9 @@ impl<'a> Walk<'a> {
                 let by_chance = site.launched(leaving, square) * cos * odds;
                 let density = area_density.unwrap_or(1.0);
                 let looked = probability * density;
+                if looked <= 0.0 {
+                    return 0.0;
+                }
                 let met = if area_density.is_some() {
                     diffuse * by_chance
                 } else {
