@@ -173,7 +173,7 @@ fn observers(sensors: &[Sensor], cameras: &[Camera]) -> Vec<DVec3> {
 }
 
 /// Surfaces nearer than their tolerance lie in one place: a scene this many times as large or less has no shape left.
-const RESOLVED: f64 = 100.0;
+const RESOLVED: f64 = 10.0;
 
 /// Refuses a scene so far from the origin that its surfaces cannot be told apart.
 fn resolved(path: &Path, surfaces: &Surfaces) -> Result<(), Error> {
