@@ -68,9 +68,9 @@ fn taken_in<const N: usize>(
 #[derive(Debug)]
 pub(crate) struct Gathering<'r, const N: usize> {
     receiver: &'r Receiver,
+    /// Divided by the probability of every event on the way: apart, the two would leave the range of numbers on a long
+    /// walk, one to either side.
     chain: Chain<N>,
-    /// Product of everything passed so far that is a number.
-    weight: f64,
     sum: Stokes<N, Sensor>,
     /// S0 of light seen in mirrors, and of emitters met by chance.
     found: [f64; 2],
@@ -177,6 +177,14 @@ impl<const N: usize> Chain<N> {
             row: None,
         }
     }
+
+    /// The chain behind a diffuse event, times a factor.
+    fn scaled(mut self, factor: f64) -> Self {
+        if let Self::ToDiffuser { leaving, .. } = &mut self {
+            *leaving = *leaving * factor;
+        }
+        self
+    }
 }
 
 impl<'r, const N: usize> Gathering<'r, N> {
@@ -186,7 +194,6 @@ impl<'r, const N: usize> Gathering<'r, N> {
         Self {
             receiver,
             chain: Chain::ToSensor(None),
-            weight: 1.0,
             sum: Stokes::unpolarised(0.0),
             found: [0.0; 2],
         }
@@ -222,10 +229,7 @@ impl<'r, const N: usize> Gathering<'r, N> {
                 let direction = -vertex.arriving;
                 let light = emitted(direction, crate::emitters::emitted_state(material));
                 let read = self.chain.pass(self.receiver, direction, light)
-                    * (self.weight
-                        * emission.exitance
-                        * vertex.emission
-                        * self.receiver.per_exitance);
+                    * (emission.exitance * vertex.emission * self.receiver.per_exitance);
                 self.found[1] += read.i();
                 self.sum += read;
             }
@@ -245,18 +249,17 @@ impl<'r, const N: usize> Gathering<'r, N> {
                 Event::Diffuse => {
                     self.chain = self
                         .chain
-                        .behind(self.receiver, material, vertex, vertex.onward);
-                    self.weight *= scattering / vertex.probability;
+                        .behind(self.receiver, material, vertex, vertex.onward)
+                        .scaled(scattering / vertex.probability);
                 }
                 Event::Mirror | Event::Through => {
                     let step = Step {
                         normal: vertex.normal,
                         arriving: vertex.arriving,
-                        matrix: vertex.matrix,
+                        matrix: vertex.matrix * (1.0 / vertex.probability),
                         through: vertex.event == Event::Through,
                     };
                     self.chain = self.chain.extended(self.receiver, &step);
-                    self.weight /= vertex.probability;
                 }
             }
         }
@@ -269,7 +272,7 @@ impl<'r, const N: usize> Gathering<'r, N> {
         }
         let light = emitted(connection.leaving, connection.state);
         let read = chain.pass(self.receiver, connection.leaving, light)
-            * (self.weight * weight * connection.irradiance);
+            * (weight * connection.irradiance);
         if connection.mirrored {
             self.found[0] += read.i();
         }
@@ -344,13 +347,12 @@ impl<const N: usize> Carrying<N> {
     }
 
     fn pass(&mut self, vertex: &Vertex) {
-        self.flux /= vertex.probability;
         let through = vertex.event == Event::Through;
         self.light = Some(passed(
             self.light,
             vertex.arriving,
             vertex.normal,
-            vertex.matrix,
+            vertex.matrix * (1.0 / vertex.probability),
             through,
         ));
     }
