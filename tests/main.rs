@@ -3,6 +3,8 @@
 
 // How a scene is run and held against an exact answer.
 mod experiment;
+// Light by images in flat mirrors and panes.
+mod images;
 
 // Closed rooms whose walls all emit: the answer is known at every point.
 mod furnace;
@@ -18,6 +20,12 @@ mod polarisation;
 mod direct;
 // Where the flux goes.
 mod ledger;
+// Every technique weighed against every other: nothing is lost, nothing counted twice.
+mod complete;
+// Sheets that light passes.
+mod panes;
+// Diffusers under a clear coat.
+mod coats;
 // More components than a scene requires change nothing.
 mod representations;
 // The same bytes whatever the threads, the steps and the interruptions.

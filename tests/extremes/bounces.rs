@@ -2,7 +2,7 @@
 //! rarely a walk ends (Kirchhoff's law; ideal mirrors neither absorb nor emit).
 
 use super::{cube, sensors, sheet};
-use crate::experiment::{assert_estimate, evaluate, measured, readings, s0, scene};
+use crate::experiment::{assert_estimate, measured, s0};
 use malus_scene::Scene;
 
 const POINTS: [[f64; 3]; 3] = [[0.5, 0.5, 0.5], [0.001, 0.001, 0.001], [0.42, 0.42, 0.0]];

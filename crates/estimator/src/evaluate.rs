@@ -68,6 +68,8 @@ fn taken_in<const N: usize>(
 #[derive(Debug)]
 pub(crate) struct Gathering<'r, const N: usize> {
     receiver: &'r Receiver,
+    /// Divided by the probability of every event on the way: apart, the two would leave the range of numbers on a long
+    /// walk, one to either side.
     chain: Chain<N>,
     sum: Stokes<N, Sensor>,
     /// S0 of light seen in mirrors, and of emitters met by chance.
@@ -175,6 +177,14 @@ impl<const N: usize> Chain<N> {
             row: None,
         }
     }
+
+    /// The chain behind a diffuse event, times a factor.
+    fn scaled(mut self, factor: f64) -> Self {
+        if let Self::ToDiffuser { leaving, .. } = &mut self {
+            *leaving = *leaving * factor;
+        }
+        self
+    }
 }
 
 impl<'r, const N: usize> Gathering<'r, N> {
@@ -239,13 +249,8 @@ impl<'r, const N: usize> Gathering<'r, N> {
                 Event::Diffuse => {
                     self.chain = self
                         .chain
-                        .behind(self.receiver, material, vertex, vertex.onward);
-                    // In a number of its own the weight would grow without bound over thousands of events, while what is
-                    // sent on dwindles.
-                    let weight = scattering / vertex.probability;
-                    if let Chain::ToDiffuser { leaving, .. } = &mut self.chain {
-                        *leaving = *leaving * weight;
-                    }
+                        .behind(self.receiver, material, vertex, vertex.onward)
+                        .scaled(scattering / vertex.probability);
                 }
                 Event::Mirror | Event::Through => {
                     let step = Step {

@@ -269,7 +269,7 @@ impl Joining<'_> {
                     let cosines = way.start.dot(vertex.normal) * -way.arriving.dot(receiver.normal);
                     let joined = Joined {
                         direction: way.start,
-                        coupling: cosines.max(0.0) / (PI * way.square) * inverse,
+                        coupling: cosines.max(0.0) / (PI * way.square) * inverse / way.drawn,
                         odds: way.odds,
                     };
                     found(&joined, &steps);

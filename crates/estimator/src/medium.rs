@@ -2,6 +2,7 @@
 
 use crate::emitters::{Emitters, Site};
 use crate::mirrors::{Drawn, Mirrors, Target, Viewer};
+use crate::random::Fresh;
 use glam::DVec3;
 use malus_geometry::{Hit, Surfaces};
 use malus_optics::{Reflection, angle_of_incidence};
@@ -79,6 +80,8 @@ pub(crate) struct Way {
     pub square: f64,
     /// Probability with which a walk would pass all its mirrors and panes.
     pub odds: f64,
+    /// Probability with which the way was drawn where panes left a choice.
+    pub drawn: f64,
 }
 
 impl Meeting<'_> {
@@ -230,17 +233,20 @@ impl<'a> Medium<'a> {
             square,
             arriving: toward,
             odds: odds * passage.odds,
+            drawn: 1.0,
         })
     }
 
     /// The way from a viewer to an image of the target behind so many mirrors, by whichever it leads.
     ///
-    /// Like [`chained`](Self::chained); the mirrors met are given too.
+    /// Like [`chained`](Self::chained); the mirrors met are given too. A pane mirrors the way or is passed as often as a
+    /// walk would do either.
     fn imaged(
         &self,
         viewer: &Viewer,
         target: &Target,
         (image, mirrors): (DVec3, usize),
+        mut choices: Fresh,
         steps: &mut Vec<Step>,
     ) -> Option<(Way, Vec<u32>)> {
         let span = image - viewer.point;
@@ -250,7 +256,7 @@ impl<'a> Medium<'a> {
         let mut left = span.length();
         let start = span / left;
         let mut chain = Vec::new();
-        let mut odds = 1.0;
+        let (mut odds, mut drawn) = (1.0, 1.0);
         let (mut from, mut toward) = (viewer.point, start);
         while chain.len() < mirrors {
             let (hit, meeting) = self.meet(from, toward)?;
@@ -260,8 +266,14 @@ impl<'a> Medium<'a> {
             left -= hit.distance;
             let (mirror, through) = meeting.matrices();
             let chances = meeting.odds(&mirror, &through);
-            let pane = meeting.material.optics.is_pane();
-            let (matrix, chance) = if pane {
+            let mut pass = meeting.material.optics.is_pane();
+            if pass && meeting.facet.is_some() && chain.len() < mirrors {
+                let share = chances.through / (chances.through + chances.mirror);
+                let [choice, ..] = choices.next();
+                pass = choice < share;
+                drawn *= if pass { share } else { 1.0 - share };
+            }
+            let (matrix, chance) = if pass {
                 (through, chances.through)
             } else {
                 chain.push(meeting.facet?);
@@ -275,11 +287,11 @@ impl<'a> Medium<'a> {
                 normal: meeting.normal,
                 arriving: toward,
                 matrix,
-                through: pane,
+                through: pass,
             });
-            let side = if pane { -1.0 } else { 1.0 };
+            let side = if pass { -1.0 } else { 1.0 };
             from = hit.position + meeting.normal * (side * self.surfaces.offset());
-            if !pane {
+            if !pass {
                 toward = (toward + meeting.normal * (2.0 * meeting.angle.0)).normalize();
             }
         }
@@ -294,6 +306,7 @@ impl<'a> Medium<'a> {
             square: span.length_squared(),
             arriving: toward,
             odds: odds * passage.odds,
+            drawn,
         };
         Some((way, chain))
     }
@@ -311,8 +324,10 @@ impl<'a> Medium<'a> {
                 let way = self.chained(viewer, target, chain, steps)?;
                 Some((way, self.mirrors.probability(viewer, target, chain)))
             }
-            Drawn::Image(image, mirrors) => {
-                let (way, chain) = self.imaged(viewer, target, (*image, *mirrors), steps)?;
+            Drawn::Image(image, mirrors, choices) => {
+                let choices = choices.clone();
+                let (way, chain) =
+                    self.imaged(viewer, target, (*image, *mirrors), choices, steps)?;
                 Some((way, self.mirrors.probability(viewer, target, &chain)))
             }
         }

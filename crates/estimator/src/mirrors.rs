@@ -100,8 +100,9 @@ pub(crate) struct Viewer {
 pub(crate) enum Drawn {
     /// In a chain of mirrors, in the order in which the viewer sees them.
     Chain(Vec<u32>),
-    /// At the place of an image behind so many mirrors, whichever they are: from a point the way there is unique.
-    Image(DVec3, usize),
+    /// At the place of an image behind so many mirrors, whichever they are: from a point the way there is unique, but for
+    /// panes, at each of which it is drawn whether the way is mirrored or goes on.
+    Image(DVec3, usize, Fresh),
 }
 
 impl Mirrors {
@@ -213,7 +214,7 @@ impl Mirrors {
                 break;
             }
             let Some((facet, chosen)) = self.met(&ray, select) else {
-                return;
+                break;
             };
             let goes_on = self.onward(facet, ray.direction);
             if onward >= goes_on {
@@ -259,7 +260,8 @@ impl Mirrors {
                 let image = self.image(&ray.facets, target);
                 let tries = uniforms.fresh(depth, order);
                 if let Some(inverse) = self.tried(viewer, target, direction, image, &ray, tries) {
-                    let image = Drawn::Image(image, ray.facets.len());
+                    let choices = uniforms.fresh(depth, order | 1 << 31);
+                    let image = Drawn::Image(image, ray.facets.len(), choices);
                     found(image, inverse / (odds * followed));
                 }
             }

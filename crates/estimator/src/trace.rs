@@ -462,7 +462,7 @@ impl<'a> Walk<'a> {
                         way.square,
                         way.odds,
                         probability,
-                        inverse,
+                        inverse / way.drawn,
                     ),
                     steps: first..path.steps.len(),
                     mirrored: true,

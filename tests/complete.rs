@@ -1,0 +1,626 @@
+//! Every technique weighed against every other: `auto` against plain `gather`, images and thermal equilibrium.
+
+use crate::experiment::{assert_estimate, evaluate, measured, readings, s0, scene};
+use crate::images::{Eye, Flat, Source, assert_images};
+use glam::DVec3;
+use malus_estimator::Reading;
+use malus_optics::{Index, Material};
+use std::f64::consts::PI;
+
+const fn v(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
+fn mirror(fraction: f64, n: f64, k: f64) -> Material {
+    Material::Mixture {
+        rho: 0.0,
+        fraction,
+        index: Index::new(n, k),
+    }
+}
+
+/// One room by both estimators: the four components, and the differences to the scalar and the diffuse model.
+#[track_caller]
+fn agree(what: &str, room: &str, [auto, gather]: [u64; 2], ceiling: f64) {
+    let by = |estimator: &str, samples: u64| {
+        measured(&format!(
+            "{room}
+            [run]
+            estimator = '{estimator}'
+            representation = 'full'
+            compare = ['scalar', 'diffuse']
+            samples = {samples}"
+        ))
+    };
+    let mut wrong = String::new();
+    for (i, (one, other)) in by("auto", auto)
+        .iter()
+        .zip(by("gather", gather))
+        .enumerate()
+    {
+        let scale = other.stokes[0];
+        let parts = |r: &Reading| {
+            let (scalar, diffuse) = (r.scalar.unwrap(), r.diffuse.unwrap());
+            let stokes = (0..4).map(|c| (r.stokes[c], r.standard_error[c]));
+            let differences = [
+                (scalar.difference, scalar.difference_standard_error),
+                (diffuse.difference, diffuse.difference_standard_error),
+            ];
+            stokes.chain(differences).collect::<Vec<_>>()
+        };
+        let names = ["S0", "S1", "S2", "S3", "ds0", "dd0"];
+        for ((name, a), b) in names.iter().zip(parts(one)).zip(parts(&other)) {
+            let z = (a.0 - b.0) / a.1.hypot(b.1).max(1e-12 * scale);
+            if z.abs() >= 4.5 || a.1 > ceiling * scale || b.1 > ceiling * scale {
+                wrong +=
+                    &format!("\n{what}, sensor {i}, {name}: auto {a:?}, gather {b:?}: z = {z:.2}");
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+const LAMP: &str = "
+    [[shape]]
+    kind = 'rectangle'
+    origin = [0.35, 0.3, 0.98]
+    u = [0, 0.3, 0]
+    v = [0.3, 0, 0]
+    material = 'lamp'
+    [material.lamp]
+    rho = 0.2
+    exitance = 5
+    two_sided = false
+";
+
+const SENSORS: &str = "
+    [[sensor]]
+    name = 'floor'
+    points = [[0.5, 0.5, 0], [0.97, 0.04, 0]]
+    normal = [0, 0, 1]
+    [[sensor]]
+    name = 'beside a wall'
+    points = [[0.003, 0.4, 0.6]]
+    normal = [0.28, 0, 0.96]
+    frame = 'fixed'
+    axis = [0, 1, 0]
+    [[sensor]]
+    name = 'facing a wall'
+    points = [[0.6, 0.98, 0.3]]
+    normal = [0, 1, 0]
+";
+
+fn room(wall: &str) -> String {
+    format!(
+        "[[shape]]
+        kind = 'box'
+        min = [0, 0, 0]
+        max = [1, 1, 1]
+        inward = true
+        material = 'wall'
+        [material.wall]
+        {wall}
+        {LAMP}
+        {SENSORS}"
+    )
+}
+
+const GLOSSY: &str = "rho = 0.6\na = 0.5\nn = 1.6";
+
+#[test]
+fn a_furnished_glossy_room_is_the_same_by_both_estimators() {
+    let furniture = "
+        [[shape]]
+        kind = 'box'
+        min = [0.15, 0.2, 0]
+        max = [0.4, 0.5, 0.45]
+        material = 'desk'
+        [[shape]]
+        kind = 'box'
+        min = [0.7, 0.55, 0.2]
+        max = [0.9, 0.85, 0.6]
+        material = 'shelf'
+        [material.desk]
+        rho = 0.3
+        a = 0.8
+        n = 2.2
+        [material.shelf]
+        rho = 0.7";
+    agree(
+        "furnished",
+        &(room(GLOSSY) + furniture),
+        [65_536, 262_144],
+        2e-2,
+    );
+}
+
+#[test]
+fn a_thin_wall_glossy_on_both_sides_is_the_same_by_both_estimators() {
+    let wall = "
+        [[shape]]
+        kind = 'rectangle'
+        origin = [0.45, 0, 0]
+        u = [0.2, 0.7, 0]
+        v = [0, 0, 0.8]
+        material = 'thin'
+        [material.thin]
+        rho = 0.4
+        a = 0.7
+        n = 3";
+    agree("thin wall", &(room(GLOSSY) + wall), [65_536, 262_144], 2e-2);
+}
+
+#[test]
+fn a_curved_mirror_is_the_same_by_both_estimators() {
+    let ball = "
+        [[shape]]
+        kind = 'sphere'
+        centre = [0.4, 0.55, 0.3]
+        radius = 0.22
+        subdivisions = 3
+        material = 'ball'
+        [material.ball]
+        rho = 0.3
+        a = 0.9
+        n = 0.183
+        k = 3.43";
+    agree("ball", &(room(GLOSSY) + ball), [65_536, 262_144], 2e-2);
+}
+
+#[test]
+fn gold_and_a_polarised_lamp_are_the_same_by_both_estimators() {
+    let lamp = "
+        emission_stokes = [1, 0.4, -0.5, 0.6]
+        emission_axis = [0.6, 0.8, 0]
+        [[shape]]
+        kind = 'rectangle'
+        origin = [0.999, 0.2, 0.2]
+        u = [0, 0, 0.6]
+        v = [0, 0.7, 0]
+        material = 'gold'
+        [material.gold]
+        rho = 0
+        a = 1
+        n = 0.183
+        k = 3.43";
+    let room = room("rho = 0.5").replace(
+        "exitance = 5",
+        &format!("exitance = 5\n{lamp}\n[material.x]"),
+    );
+    let room = room.replace("[material.x]\n    two_sided = false", "");
+    agree("gold", &room, [65_536, 262_144], 2e-2);
+}
+
+#[test]
+fn ideal_mirrors_and_black_backs_are_the_same_by_both_estimators() {
+    let mirrors = "
+        [[shape]]
+        kind = 'rectangle'
+        origin = [0, 0.001, 0.1]
+        u = [0.9, 0, 0]
+        v = [0, 0, 0.7]
+        material = 'mirror'
+        [[shape]]
+        kind = 'rectangle'
+        origin = [0.2, 0.8, 0.2]
+        u = [0, 0, 0.5]
+        v = [0.6, 0, 0]
+        material = 'black backed'
+        [material.mirror]
+        rho = 0
+        a = 1
+        n = inf
+        [material.'black backed']
+        rho = 0.2
+        a = 0.9
+        n = inf
+        two_sided = false";
+    // The mirror at y = 0 faces −y, so its other side is the one in the room.
+    agree(
+        "ideal",
+        &(room("rho = 0.5") + mirrors),
+        [65_536, 262_144],
+        2e-2,
+    );
+}
+
+#[test]
+fn several_lamps_of_several_states_are_the_same_by_both_estimators() {
+    let lamps = "
+        [[shape]]
+        kind = 'sphere'
+        centre = [0.2, 0.8, 0.5]
+        radius = 0.06
+        subdivisions = 2
+        material = 'bulb'
+        [[shape]]
+        kind = 'rectangle'
+        origin = [0.998, 0.6, 0.4]
+        u = [0, 0, 0.2]
+        v = [0, 0.2, 0]
+        material = 'sign'
+        [material.bulb]
+        rho = 0.5
+        a = 0.5
+        n = 1.5
+        exitance = 8
+        emission_stokes = [1, 0, 0, 0.9]
+        [material.sign]
+        rho = 0.1
+        exitance = 30
+        emission_stokes = [1, -0.7, 0.2, 0]
+        emission_axis = [0, 0, 1]";
+    let metal = "rho = 0.4\na = 0.6\nn = 1.2\nk = 1.7";
+    agree("lamps", &(room(metal) + lamps), [65_536, 262_144], 3e-2);
+}
+
+#[test]
+fn walls_that_emit_and_mirror_are_the_same_by_both_estimators() {
+    let glow = format!("{GLOSSY}\nexitance = 0.3\nemission_stokes = [1, 0.3, 0.3, 0.3]");
+    agree("glow", &room(&glow), [65_536, 262_144], 2e-2);
+}
+
+fn point(at: DVec3) -> Source {
+    Source {
+        at,
+        finite: true,
+        strength: 3.0,
+        state: [1.0, 0.4, -0.5, 0.6],
+        axis: v(0.6, 0.8, 0.1),
+    }
+}
+
+fn parallel(from: DVec3) -> Source {
+    Source {
+        at: from.normalize(),
+        finite: false,
+        strength: 2.0,
+        ..point(from)
+    }
+}
+
+fn eyes(places: &[(DVec3, DVec3)]) -> Vec<Eye> {
+    let both = |&(at, normal): &(DVec3, DVec3)| {
+        [false, true].map(|fixed| Eye {
+            at,
+            normal: normal.normalize(),
+            axis: v(0.1, 0.9, 0.3),
+            fixed,
+        })
+    };
+    places.iter().flat_map(both).collect()
+}
+
+fn floor(material: Material) -> Flat {
+    Flat {
+        origin: v(-4.0, -4.0, 0.0),
+        u: v(8.0, 0.0, 0.0),
+        v: v(0.0, 8.0, 0.0),
+        material,
+    }
+}
+
+/// The reflectors that an image is drawn in.
+fn reflectors() -> [(&'static str, Material); 4] {
+    [
+        ("ideal", mirror(1.0, f64::INFINITY, 0.0)),
+        ("glass", mirror(1.0, 1.5, 0.0)),
+        ("part gold", mirror(0.7, 0.183, 3.43)),
+        ("from inside", mirror(1.0, 1.0 / 1.49661, 0.0)),
+    ]
+}
+
+#[test]
+fn one_mirror_makes_one_image() {
+    let eyes = eyes(&[
+        (v(1.2, 0.4, 0.7), v(0.3, 0.2, -1.0)),
+        (v(-0.5, 0.9, 0.002), v(1.0, -0.3, 0.1)),
+        (v(0.4, -1.3, 1.9), v(0.0, 0.5, -0.2)),
+    ]);
+    for (name, material) in reflectors() {
+        let sources = [point(v(0.1, -0.2, 0.9)), parallel(v(0.3, -0.4, 0.8))];
+        for source in sources {
+            // One source and one mirror leave nothing to chance.
+            assert_images(name, &[floor(material)], &[source], &eyes, 1, 4096, 1e-9);
+        }
+        assert_images(name, &[floor(material)], &sources, &eyes, 1, 65_536, 5e-3);
+    }
+}
+
+/// The corner of a room of three mirrors, seven images.
+fn corner(material: Material) -> Vec<Flat> {
+    let side = |u: DVec3, w: DVec3| Flat {
+        origin: DVec3::ZERO,
+        u: u * 5.0,
+        v: w * 5.0,
+        material,
+    };
+    vec![
+        side(DVec3::X, DVec3::Y),
+        side(DVec3::Y, DVec3::Z),
+        side(DVec3::Z, DVec3::X),
+    ]
+}
+
+#[test]
+fn a_corner_of_two_and_of_three_mirrors_makes_three_and_seven_images() {
+    let eyes = eyes(&[
+        (v(1.2, 0.4, 0.7), v(-0.3, -0.2, -1.0)),
+        (v(0.5, 0.9, 0.3), v(-1.0, -0.3, 0.2)),
+    ]);
+    for (name, material) in reflectors() {
+        for source in [point(v(0.8, 1.1, 0.9)), parallel(v(0.3, 0.4, 0.8))] {
+            let flats = corner(material);
+            assert_images(name, &flats[..2], &[source], &eyes, 4, 16_384, 3e-2);
+            assert_images(name, &flats, &[source], &eyes, 5, 16_384, 3e-2);
+        }
+    }
+}
+
+#[test]
+fn a_kaleidoscope_of_three_mirrors_makes_a_lattice_of_images() {
+    let corners = [
+        v(0.0, 0.0, -6.0),
+        v(1.0, 0.0, -6.0),
+        v(0.5, 0.75f64.sqrt(), -6.0),
+    ];
+    let eyes = eyes(&[
+        (v(0.5, 0.3, 0.1), v(0.2, 1.0, 0.3)),
+        (v(0.35, 0.2, -0.4), v(1.0, 0.1, 0.9)),
+    ]);
+    for (name, material, longest) in [
+        ("glass", mirror(1.0, 1.5, 0.0), 13),
+        ("part gold", mirror(0.3, 0.183, 3.43), 11),
+    ] {
+        let flats: Vec<Flat> = (0..3)
+            .map(|i| Flat {
+                origin: corners[i],
+                u: corners[(i + 1) % 3] - corners[i],
+                v: v(0.0, 0.0, 12.0),
+                material,
+            })
+            .collect();
+        let source = point(v(0.55, 0.41, 0.3));
+        assert_images(name, &flats, &[source], &eyes, longest, 131_072, 1e-2);
+    }
+}
+
+#[test]
+fn mirrors_that_hide_one_another_make_no_image_where_they_do() {
+    let gold = mirror(1.0, 0.183, 3.43);
+    let aside = |origin: DVec3, u: DVec3, w: DVec3| Flat {
+        origin,
+        u,
+        v: w,
+        material: gold,
+    };
+    let flats = [
+        floor(gold),
+        // Stands on the floor between source and sensor, and one hangs over it.
+        aside(v(0.3, -0.5, 0.0), v(0.1, 1.4, 0.0), v(0.0, 0.2, 0.6)),
+        aside(v(-1.0, -1.0, 1.8), v(1.6, 0.0, 0.1), v(0.0, 2.0, 0.3)),
+        aside(v(-0.9, -1.0, 0.2), v(0.0, 2.0, 0.3), v(0.2, 0.1, 1.3)),
+    ];
+    let eyes = eyes(&[
+        (v(1.2, 0.4, 0.7), v(-0.3, 0.2, -1.0)),
+        (v(0.1, 0.6, 0.4), v(1.0, 0.3, 0.1)),
+        (v(-0.2, -0.3, 1.2), v(-0.5, 0.3, 0.8)),
+    ]);
+    let source = point(v(-0.1, 0.1, 0.5));
+    assert_images("gold", &flats, &[source], &eyes, 7, 131_072, 3e-2);
+}
+
+/// Parallel mirrors: images without end, drawn as chains to the third and as images beyond.
+#[test]
+fn two_parallel_mirrors_make_a_row_of_images() {
+    let ceiling = |material| Flat {
+        origin: v(-40.0, -40.0, 1.0),
+        u: v(80.0, 0.0, 0.0),
+        v: v(0.0, 80.0, 0.0),
+        material,
+    };
+    let floor = |material| Flat {
+        origin: v(-40.0, -40.0, 0.0),
+        ..ceiling(material)
+    };
+    let eyes = eyes(&[
+        (v(0.5, 0.3, 0.1), v(0.2, 0.1, 1.0)),
+        (v(0.35, 0.2, 0.6), v(1.0, 0.1, -0.9)),
+    ]);
+    for (name, material) in [
+        ("gold", mirror(0.8, 0.183, 3.43)),
+        ("dense", mirror(1.0, 3.0, 0.0)),
+    ] {
+        let flats = [floor(material), ceiling(material)];
+        let source = point(v(-0.3, 0.41, 0.3));
+        assert_images(name, &flats, &[source], &eyes, 60, 131_072, 1e-2);
+    }
+}
+
+/// A black lamp of exitance M and reflectors that lose nothing, or Lambert surfaces that emit (1 − ρ)M: the light is that of a
+/// cavity in equilibrium, M from every side and of no polarisation, whatever stands where.
+#[test]
+fn light_in_equilibrium_is_the_same_everywhere() {
+    let cavity = "
+        [[shape]]
+        kind = 'box'
+        min = [0, 0, 0]
+        max = [1, 1, 1]
+        inward = true
+        material = 'coated'
+        [[shape]]
+        kind = 'rectangle'
+        origin = [0, 0, 0.001]
+        u = [1, 0, 0]
+        v = [0, 1, 0]
+        material = 'warm'
+        [[shape]]
+        kind = 'rectangle'
+        origin = [0.001, 0.1, 0.1]
+        u = [0, 0.5, 0]
+        v = [0, 0, 0.8]
+        material = 'mirror'
+        [[shape]]
+        kind = 'rectangle'
+        origin = [0.5, 0.1, 0.2]
+        u = [0.1, 0.7, 0]
+        v = [0, 0.1, 0.6]
+        material = 'pane'
+        [[shape]]
+        kind = 'box'
+        min = [0.7, 0.6, 0.3]
+        max = [0.9, 0.8, 0.5]
+        material = 'black'
+        [material.coated]
+        kind = 'coated'
+        rho = 1
+        n = 1.5
+        [material.warm]
+        rho = 0.6
+        exitance = 0.8
+        [material.mirror]
+        rho = 1
+        a = 0.7
+        n = inf
+        [material.pane]
+        kind = 'pane'
+        n = 1.6
+        [material.black]
+        rho = 0
+        exitance = 2
+        [[sensor]]
+        name = 'irradiance'
+        points = [[0.2, 0.5, 0.5], [0.52, 0.45, 0.5], [0.003, 0.99, 0.4], [0.5, 0.5, 0.999]]
+        normal = [0.6, 0, -0.8]
+        [[sensor]]
+        name = 'radiance'
+        quantity = 'radiance'
+        points = [[0.2, 0.5, 0.5], [0.9, 0.1, 0.1]]
+        direction = [0.5, -0.3, 0.2]";
+    for (estimator, samples) in [("auto", 32_768), ("gather", 65_536)] {
+        let run = format!(
+            "[run]\nestimator = '{estimator}'\nrepresentation = 'full'\nsamples = {samples}"
+        );
+        for (i, reading) in measured(&format!("{cavity}\n{run}")).iter().enumerate() {
+            let share = if i < 4 { 1.0 } else { 1.0 / PI };
+            let what = format!("{estimator}, sensor {i}");
+            assert_estimate(&what, s0(reading), 2.0 * share, 1e-2);
+            for c in 1..4 {
+                let (value, error) = (reading.stokes[c], reading.standard_error[c]);
+                assert!(
+                    value.abs() <= 4.5 * error,
+                    "{what}: S{c} = {value} ± {error}"
+                );
+                assert!(
+                    error < 1e-2 * 2.0 * share,
+                    "{what}: S{c} = {value} ± {error}"
+                );
+            }
+        }
+    }
+}
+
+/// A source without size is what a tiny ball of the same intensity is.
+#[test]
+fn a_point_source_is_a_tiny_ball() {
+    // A ball of radius r has the radiance M/π and the outline π r²: the intensity M r² to every side.
+    let radius: f64 = 0.02;
+    let exitance = 0.4 / (radius * radius);
+    let ball = format!(
+        "[[shape]]
+        kind = 'sphere'
+        centre = [0.62, 0.44, 0.7]
+        radius = {radius}
+        subdivisions = 4
+        material = 'ball'
+        [material.ball]
+        rho = 0
+        exitance = {exitance}"
+    );
+    let source = "[[source]]
+        kind = 'point'
+        position = [0.62, 0.44, 0.7]
+        intensity = 0.4";
+    let dark = room("rho = 0.5\na = 0.6\nn = 1.8").replace("exitance = 5", "exitance = 0");
+    let by = |light: &str, estimator: &str, samples: u64| {
+        measured(&format!(
+            "{dark}
+            {light}
+            [run]
+            estimator = '{estimator}'
+            samples = {samples}"
+        ))
+    };
+    let balls = by(&ball, "gather", 524_288);
+    for (one, other) in by(source, "auto", 65_536).iter().zip(balls) {
+        for c in 0..3 {
+            // The ball covers less than a thousandth of what is seen, hides as much, and is a polyhedron.
+            let model = 1.5e-3 * other.stokes[0];
+            let error = one.standard_error[c].hypot(other.standard_error[c]);
+            let z = (one.stokes[c] - other.stokes[c]) / error.hypot(model);
+            assert!(z.abs() < 4.5, "S{c}: {one:?} {other:?}: z = {z:.2}");
+            assert!(error < 3e-2 * other.stokes[0], "S{c}: {error}");
+        }
+    }
+}
+
+#[test]
+fn every_technique_at_once_gives_the_same_bits_on_any_number_of_threads() {
+    let pane = "
+        [[shape]]
+        kind = 'rectangle'
+        origin = [0.1, 0.1, 0.5]
+        u = [0.5, 0, 0.1]
+        v = [0, 0.6, 0]
+        material = 'pane'
+        [material.pane]
+        kind = 'pane'
+        n = 1.5
+        tau = 0.9
+        [[shape]]
+        kind = 'sphere'
+        centre = [0.7, 0.7, 0.2]
+        radius = 0.1
+        subdivisions = 2
+        material = 'coated'
+        [material.coated]
+        kind = 'coated'
+        rho = 0.7
+        n = 1.5
+        [[source]]
+        kind = 'point'
+        position = [0.3, 0.3, 0.3]
+        intensity = 0.2
+        stokes = [1, 0.2, 0.3, 0.4]
+        [[source]]
+        kind = 'distant'
+        direction = [0.1, 0.2, -1]
+        irradiance = 1
+        [[sensor]]
+        name = 'sight'
+        quantity = 'radiance'
+        points = [[0.5, 0.5, 0.3]]
+        direction = [0.4, 0.3, -0.2]
+        [run]
+        representation = 'full'
+        compare = ['scalar', 'diffuse']
+        samples = 2048";
+    let scene = scene(&(room("rho = 0.5\na = 0.6\nn = 0.9") + pane));
+    let bits = |threads: usize| -> Vec<u64> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let readings = pool.unwrap().install(|| readings(&evaluate(&scene)));
+        let all = readings.iter().flat_map(|r| {
+            let paired = [r.scalar, r.diffuse].into_iter().flatten();
+            let paired = paired.flat_map(|p| [p.value, p.difference, p.difference_standard_error]);
+            let own = r.stokes.into_iter().chain(r.standard_error);
+            own.chain([r.dolp])
+                .chain(paired)
+                .map(f64::to_bits)
+                .collect::<Vec<_>>()
+        });
+        all.collect()
+    };
+    let one = bits(1);
+    assert_eq!(one, bits(2));
+    assert_eq!(one, bits(5));
+}
