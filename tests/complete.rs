@@ -33,7 +33,11 @@ fn agree(what: &str, room: &str, [auto, gather]: [u64; 2], ceiling: f64) {
         ))
     };
     let mut wrong = String::new();
-    for (i, (one, other)) in by("auto", auto).iter().zip(by("gather", gather)).enumerate() {
+    for (i, (one, other)) in by("auto", auto)
+        .iter()
+        .zip(by("gather", gather))
+        .enumerate()
+    {
         let scale = other.stokes[0];
         let parts = |r: &Reading| {
             let (scalar, diffuse) = (r.scalar.unwrap(), r.diffuse.unwrap());
@@ -48,7 +52,8 @@ fn agree(what: &str, room: &str, [auto, gather]: [u64; 2], ceiling: f64) {
         for ((name, a), b) in names.iter().zip(parts(one)).zip(parts(&other)) {
             let z = (a.0 - b.0) / a.1.hypot(b.1).max(1e-12 * scale);
             if z.abs() >= 4.5 || a.1 > ceiling * scale || b.1 > ceiling * scale {
-                wrong += &format!("\n{what}, sensor {i}, {name}: auto {a:?}, gather {b:?}: z = {z:.2}");
+                wrong +=
+                    &format!("\n{what}, sensor {i}, {name}: auto {a:?}, gather {b:?}: z = {z:.2}");
             }
         }
     }
@@ -121,7 +126,12 @@ fn a_furnished_glossy_room_is_the_same_by_both_estimators() {
         n = 2.2
         [material.shelf]
         rho = 0.7";
-    agree("furnished", &(room(GLOSSY) + furniture), [65_536, 262_144], 2e-2);
+    agree(
+        "furnished",
+        &(room(GLOSSY) + furniture),
+        [65_536, 262_144],
+        2e-2,
+    );
 }
 
 #[test]
@@ -173,7 +183,10 @@ fn gold_and_a_polarised_lamp_are_the_same_by_both_estimators() {
         a = 1
         n = 0.183
         k = 3.43";
-    let room = room("rho = 0.5").replace("exitance = 5", &format!("exitance = 5\n{lamp}\n[material.x]"));
+    let room = room("rho = 0.5").replace(
+        "exitance = 5",
+        &format!("exitance = 5\n{lamp}\n[material.x]"),
+    );
     let room = room.replace("[material.x]\n    two_sided = false", "");
     agree("gold", &room, [65_536, 262_144], 2e-2);
 }
@@ -203,7 +216,12 @@ fn ideal_mirrors_and_black_backs_are_the_same_by_both_estimators() {
         n = inf
         two_sided = false";
     // The mirror at y = 0 faces −y, so its other side is the one in the room.
-    agree("ideal", &(room("rho = 0.5") + mirrors), [65_536, 262_144], 2e-2);
+    agree(
+        "ideal",
+        &(room("rho = 0.5") + mirrors),
+        [65_536, 262_144],
+        2e-2,
+    );
 }
 
 #[test]
@@ -317,7 +335,11 @@ fn corner(material: Material) -> Vec<Flat> {
         v: w * 5.0,
         material,
     };
-    vec![side(DVec3::X, DVec3::Y), side(DVec3::Y, DVec3::Z), side(DVec3::Z, DVec3::X)]
+    vec![
+        side(DVec3::X, DVec3::Y),
+        side(DVec3::Y, DVec3::Z),
+        side(DVec3::Z, DVec3::X),
+    ]
 }
 
 #[test]
@@ -337,7 +359,11 @@ fn a_corner_of_two_and_of_three_mirrors_makes_three_and_seven_images() {
 
 #[test]
 fn a_kaleidoscope_of_three_mirrors_makes_a_lattice_of_images() {
-    let corners = [v(0.0, 0.0, -6.0), v(1.0, 0.0, -6.0), v(0.5, 0.75f64.sqrt(), -6.0)];
+    let corners = [
+        v(0.0, 0.0, -6.0),
+        v(1.0, 0.0, -6.0),
+        v(0.5, 0.75f64.sqrt(), -6.0),
+    ];
     let eyes = eyes(&[
         (v(0.5, 0.3, 0.1), v(0.2, 1.0, 0.3)),
         (v(0.35, 0.2, -0.4), v(1.0, 0.1, 0.9)),
@@ -481,8 +507,14 @@ fn light_in_equilibrium_is_the_same_everywhere() {
             assert_estimate(&what, s0(reading), 2.0 * share, 1e-2);
             for c in 1..4 {
                 let (value, error) = (reading.stokes[c], reading.standard_error[c]);
-                assert!(value.abs() <= 4.5 * error, "{what}: S{c} = {value} ± {error}");
-                assert!(error < 1e-2 * 2.0 * share, "{what}: S{c} = {value} ± {error}");
+                assert!(
+                    value.abs() <= 4.5 * error,
+                    "{what}: S{c} = {value} ± {error}"
+                );
+                assert!(
+                    error < 1e-2 * 2.0 * share,
+                    "{what}: S{c} = {value} ± {error}"
+                );
             }
         }
     }
@@ -581,7 +613,10 @@ fn every_technique_at_once_gives_the_same_bits_on_any_number_of_threads() {
             let paired = [r.scalar, r.diffuse].into_iter().flatten();
             let paired = paired.flat_map(|p| [p.value, p.difference, p.difference_standard_error]);
             let own = r.stokes.into_iter().chain(r.standard_error);
-            own.chain([r.dolp]).chain(paired).map(f64::to_bits).collect::<Vec<_>>()
+            own.chain([r.dolp])
+                .chain(paired)
+                .map(f64::to_bits)
+                .collect::<Vec<_>>()
         });
         all.collect()
     };

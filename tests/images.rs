@@ -48,7 +48,8 @@ impl Flat {
         let at = from + toward * share - self.origin;
         let across = self.u.cross(self.v);
         // The two sides need not stand across each other.
-        let along = |one: DVec3, other: DVec3| one.cross(other).dot(across) / across.length_squared();
+        let along =
+            |one: DVec3, other: DVec3| one.cross(other).dot(across) / across.length_squared();
         let inside = |part: f64| (0.0..=1.0).contains(&part);
         let within = inside(along(at, self.v)) && inside(along(self.u, at));
         (share > 1e-9 && share.is_finite() && within).then_some(share)
@@ -88,14 +89,17 @@ fn way(
     let mut wanted = next.next();
     let mut last = None;
     // What is left of the way to the image, which may stand before a mirror.
-    let mut left = if source.finite { span.length() } else { f64::INFINITY };
+    let mut left = if source.finite {
+        span.length()
+    } else {
+        f64::INFINITY
+    };
     loop {
         let first = (0..flats.len())
             .filter(|&f| last != Some(f))
             .filter_map(|f| Some((flats[f].crossing(from, toward)?, f)))
             .min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((share, flat)) = first.filter(|&(share, _)| share < left)
-        else {
+        let Some((share, flat)) = first.filter(|&(share, _)| share < left) else {
             let there = wanted.is_none();
             return there.then_some((met, start, toward, span.length_squared()));
         };
@@ -132,7 +136,11 @@ fn arriving(flats: &[Flat], source: &Source, eye: &Eye, chain: &[usize]) -> Opti
         let flat = &flats[met.flat];
         let side = flat.normal();
         let direction = basis.direction();
-        let normal = if direction.dot(side) < 0.0 { side } else { -side };
+        let normal = if direction.dot(side) < 0.0 {
+            side
+        } else {
+            -side
+        };
         let (cos, sin2) = angle_of_incidence(direction, normal);
         let (incidence, emergence) = Basis::<Incidence>::mirror(direction, normal);
         let (matrix, onward): (Reflection, _) = if met.through {
@@ -205,7 +213,11 @@ fn described(material: &Material) -> String {
         }
         Material::Pane { n, tau } => format!("kind = 'pane'\nn = {n:?}\ntau = {tau:?}"),
         Material::Coated(coated) => {
-            format!("kind = 'coated'\nrho = {:?}\nn = {:?}", coated.rho(), coated.n())
+            format!(
+                "kind = 'coated'\nrho = {:?}\nn = {:?}",
+                coated.rho(),
+                coated.n()
+            )
         }
     }
 }
@@ -234,7 +246,11 @@ pub fn written(flats: &[Flat], sources: &[Source], eyes: &[Eye]) -> String {
                 triple(-at)
             )
         };
-        text += &format!("stokes = {:?}\naxis = {}\n", source.state, triple(source.axis));
+        text += &format!(
+            "stokes = {:?}\naxis = {}\n",
+            source.state,
+            triple(source.axis)
+        );
     }
     for (i, eye) in eyes.iter().enumerate() {
         let (at, normal, axis) = (triple(eye.at), triple(eye.normal), triple(eye.axis));
@@ -291,7 +307,13 @@ pub fn assert_images(
             }
         }
         // A source is moved by a billionth of the scene before its images are drawn.
-        assert_stokes(&format!("{what}, sensor {i}"), reading, exact, 1e-7, ceiling);
+        assert_stokes(
+            &format!("{what}, sensor {i}"),
+            reading,
+            exact,
+            1e-7,
+            ceiling,
+        );
     }
 }
 

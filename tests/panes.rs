@@ -169,7 +169,10 @@ fn parallel_light_crosses_two_panes_by_all_turns_between_them() {
         // The images on paper say the same.
         let images = by_images(&flats, &source, &eye, 60);
         for (one, other) in images.iter().zip(exact) {
-            assert!((one - other).abs() < 1e-10 * exact[0], "{images:?} {exact:?}");
+            assert!(
+                (one - other).abs() < 1e-10 * exact[0],
+                "{images:?} {exact:?}"
+            );
         }
     }
 }
@@ -194,9 +197,20 @@ fn a_point_source_between_a_mirror_and_a_pane_has_all_its_images() {
         (v(1.2, 0.4, 0.6), v(0.3, 0.2, 1.0)),
         (v(0.5, 0.9, 1.4), v(0.2, -0.3, -1.0)),
     ]);
-    let flats = [sheet(1.0, pane(4.0, 1.0)), sheet(0.0, mirror(0.95, f64::INFINITY, 0.0))];
+    let flats = [
+        sheet(1.0, pane(4.0, 1.0)),
+        sheet(0.0, mirror(0.95, f64::INFINITY, 0.0)),
+    ];
     for source in [point(v(0.1, -0.2, 3.0)), point(v(0.1, -0.2, 0.7))] {
-        assert_images("pane and mirror", &flats, &[source], &eyes, 80, 65_536, 2e-2);
+        assert_images(
+            "pane and mirror",
+            &flats,
+            &[source],
+            &eyes,
+            80,
+            65_536,
+            2e-2,
+        );
     }
 }
 
@@ -246,7 +260,11 @@ fn a_clear_pane_in_a_furnace_changes_nothing() {
                 samples = 32768"
             ));
             for (i, reading) in readings.iter().enumerate() {
-                let share = if i < 4 { 1.0 } else { std::f64::consts::FRAC_1_PI };
+                let share = if i < 4 {
+                    1.0
+                } else {
+                    std::f64::consts::FRAC_1_PI
+                };
                 let exact = 2.0 / (1.0 - rho) * share;
                 assert_stokes(
                     &format!("{estimator}, ρ = {rho}, sensor {i}"),
@@ -309,7 +327,12 @@ fn panes_in_a_glossy_room_are_the_same_by_both_estimators() {
             samples = {samples}"
         ))
     };
-    assert_same("room", &room("auto", 65_536), &room("gather", 262_144), 6e-2);
+    assert_same(
+        "room",
+        &room("auto", 65_536),
+        &room("gather", 262_144),
+        6e-2,
+    );
 }
 
 /// The sun through a pane in the window of a room without gloss: every estimator finds all of it, and straight light is
@@ -318,7 +341,9 @@ fn panes_in_a_glossy_room_are_the_same_by_both_estimators() {
 fn the_sun_shines_through_a_pane_in_a_window() {
     let room = |estimator: &str, samples: u64| {
         let wall = |origin: &str, u: &str, v: &str| {
-            format!("[[shape]]\nkind = 'rectangle'\norigin = {origin}\nu = {u}\nv = {v}\nmaterial = 'wall'\n")
+            format!(
+                "[[shape]]\nkind = 'rectangle'\norigin = {origin}\nu = {u}\nv = {v}\nmaterial = 'wall'\n"
+            )
         };
         let walls = [
             wall("[0, 0, 0]", "[1, 0, 0]", "[0, 1, 0]"),
@@ -364,20 +389,33 @@ fn the_sun_shines_through_a_pane_in_a_window() {
             walls.concat()
         ))
     };
-    let [auto, gather] = [("auto", 65_536), ("gather", 131_072)].map(|(e, samples)| room(e, samples));
+    let [auto, gather] =
+        [("auto", 65_536), ("gather", 131_072)].map(|(e, samples)| room(e, samples));
     assert_same("gather", &auto, &gather, 2e-2);
     // Of walks from the sun alone, light that a pane mirrors last is missing: where the pane is far above grazing it is
     // little, so this bounds it from one side.
     let local = room("local", 1_048_576);
     for (a, l) in auto.iter().zip(&local) {
-        let (difference, error) = (a.stokes[0] - l.stokes[0], a.standard_error[0].hypot(l.standard_error[0]));
-        assert!(difference > -4.5 * error && difference < 0.1 * a.stokes[0], "{a:?} {l:?}");
+        let (difference, error) = (
+            a.stokes[0] - l.stokes[0],
+            a.standard_error[0].hypot(l.standard_error[0]),
+        );
+        assert!(
+            difference > -4.5 * error && difference < 0.1 * a.stokes[0],
+            "{a:?} {l:?}"
+        );
     }
     let through = pane(1.6, 0.8).through(0.8, 0.36);
     let dark = |i: usize| auto[i].stokes[1] / (5.0 * 0.6);
     // What is scattered has an S1 of its own only by the panes: the difference between the two points is the sun's, to within it.
-    assert!((dark(0) - dark(1) - through.half_difference()).abs() < 0.02, "{auto:?}");
+    assert!(
+        (dark(0) - dark(1) - through.half_difference()).abs() < 0.02,
+        "{auto:?}"
+    );
     let direct = 5.0 * 0.6 * through.mean();
-    assert!(s0(&auto[0]).0 > direct && s0(&auto[0]).0 < 1.5 * direct, "{auto:?}");
+    assert!(
+        s0(&auto[0]).0 > direct && s0(&auto[0]).0 < 1.5 * direct,
+        "{auto:?}"
+    );
     assert_estimate("floor", s0(&auto[0]), s0(&gather[0]).0, 2e-2);
 }

@@ -271,8 +271,8 @@ impl<'r, const N: usize> Gathering<'r, N> {
             chain = chain.extended(self.receiver, step);
         }
         let light = emitted(connection.leaving, connection.state);
-        let read = chain.pass(self.receiver, connection.leaving, light)
-            * (weight * connection.irradiance);
+        let read =
+            chain.pass(self.receiver, connection.leaving, light) * (weight * connection.irradiance);
         if connection.mirrored {
             self.found[0] += read.i();
         }
