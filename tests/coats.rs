@@ -40,7 +40,7 @@ fn kernel(rho: f64, n: f64) -> (f64, f64) {
 fn a_coated_sphere_that_emits_has_its_exact_answer() {
     let (rho, n) = (0.6, 1.5);
     let count = 24;
-    let (positions, triangles) = malus_geometry::shape::sphere(DVec3::ZERO, 1.0, true, 5);
+    let (positions, triangles) = malus_geometry::shape::sphere(DVec3::ZERO, 1.0, true, 7);
     let stride = triangles.len() / count;
     let sensors: String = (0..count)
         .map(|i| {
@@ -58,7 +58,7 @@ fn a_coated_sphere_that_emits_has_its_exact_answer() {
         centre = [0, 0, 0]
         radius = 1
         inward = true
-        subdivisions = 5
+        subdivisions = 7
         material = 'wall'
         [material.wall]
         kind = 'coated'
@@ -84,19 +84,19 @@ fn a_coated_sphere_that_emits_has_its_exact_answer() {
             mu * (1.0 / (1.0 - rs) + sign / (1.0 - rp))
         })
     };
-    // The facets of 5 subdivisions make integrals over chains wrong by 1.4e-4 at most.
+    // Facets end chains at grazing angles: five subdivisions make E low by 3.9e-3, seven by less than a fifth of that.
     let (value, error) = mean(&s0);
     let exact = of(1.0) + scattered;
-    assert_estimate("E", (value, error.hypot(1e-4 * exact)), exact, 1e-3);
+    assert_estimate("E", (value, error.hypot(3e-4 * exact)), exact, 1e-3);
     let (value, error) = mean(&|r| (r.stokes[1], r.standard_error[1]));
-    assert_estimate("S1", (value, error.hypot(1e-4 * exact)), of(-1.0), 1e-2);
+    assert_estimate("S1", (value, error.hypot(3e-4 * exact)), of(-1.0), 1e-2);
     let scalar = over_cosines(|mu| {
         let (rs, rp) = reflectances(n, mu);
         4.0 * mu / (2.0 - rs - rp)
     });
     let (value, error) = mean(&|r| r.scalar.map(|s| (s.value, s.standard_error)).unwrap());
     let exact = scalar + scattered;
-    assert_estimate("scalar", (value, error.hypot(1e-4 * exact)), exact, 1e-3);
+    assert_estimate("scalar", (value, error.hypot(3e-4 * exact)), exact, 1e-3);
 }
 
 /// A coated plane without end, or so, in parallel light; `sensors` read it.
@@ -336,21 +336,12 @@ fn white_coats_return_all_light_to_the_lamp() {
     let black = ROOM
         .replace("rho = 0.2", "rho = 0")
         .replace("[1, 0.4, -0.5, 0.6]", "[1, 0, 0, 0]");
-    // Light that starts below the table, or from the lamp's back, would be another lamp's.
-    let readings = measured(&format!(
-        "{black}
-        {materials}
-        [run]
-        representation = 'full'
-        samples = 16384"
-    ));
-    // The back of the lamp takes light in and sends none: as much as it takes, the lamp is short of M.
     let whole = [5.0, 0.0, 0.0, 0.0];
-    for reading in &readings {
-        assert!(reading.stokes[0] < whole[0], "{reading:?}");
-        assert!(reading.standard_error[0] < 2e-2 * whole[0], "{reading:?}");
-    }
-    let flush = black.replace("0.98]", "1]");
+    // Flush with the ceiling the lamp has no back, and a large one soon gets its light back.
+    let flush = black.replace("[0.35, 0.3, 0.98]", "[0.1, 0.1, 1]").replace(
+        "u = [0, 0.3, 0]\n    v = [0.3, 0, 0]",
+        "u = [0, 0.8, 0]\n    v = [0.8, 0, 0]",
+    );
     let readings = measured(&format!(
         "{flush}
         {materials}
@@ -382,9 +373,9 @@ fn sight(scene: &str, at: &str, direction: DVec3, axis: &str, samples: u64) -> R
 const PANEL: &str = "
     [[shape]]
     kind = 'rectangle'
-    origin = [-2, -2, 3]
-    u = [0, 4, 0]
-    v = [4, 0, 0]
+    origin = [-9, -9, 3]
+    u = [0, 18, 0]
+    v = [18, 0, 0]
     material = 'lamp'
     [material.lamp]
     rho = 0
@@ -413,7 +404,7 @@ fn a_radiance_looks_straight_at_a_lamp() {
 }
 
 #[test]
-fn a_radiance_looks_at_a_lamp_in_a_mirror_and_through_a_pane() {
+fn a_radiance_looks_at_a_lamp_in_a_mirror_at_brewsters_angle() {
     let flats = [
         Material::Mixture {
             rho: 0.0,
@@ -433,73 +424,71 @@ fn a_radiance_looks_at_a_lamp_in_a_mirror_and_through_a_pane() {
         "kind = 'coated'\nrho = 0\nn = 1.5",
     ];
     for (material, text) in flats.iter().zip(texts) {
-        for pane in [false, true] {
-            let floor = format!(
-                "[[shape]]
-                kind = 'rectangle'
-                origin = [-5, -5, 0]
-                u = [10, 0, 0]
-                v = [0, 10, 0]
-                material = 'floor'
-                [material.floor]
-                {text}
-                [material.pane]
-                kind = 'pane'
-                n = 1.7
-                tau = 0.9\n"
-            );
-            let sheet = "[[shape]]
-                kind = 'rectangle'
-                origin = [-5, -5, 1.6]
-                u = [10, 1, 1]
-                v = [0, 10, 0]
-                material = 'pane'\n";
-            let sheet = if pane { sheet } else { "" };
-            // Brewster's angle: tan θ = 1.5.
-            let looking = DVec3::new(1.5 * 0.8, 1.5 * 0.6, -1.0).normalize();
-            let scene = format!("{PANEL}{floor}{sheet}");
-            let reading = sight(
-                &scene,
-                "[-0.8, -0.6, 0.6]",
-                looking,
-                "[0.2, 1, 0.4]",
-                262_144,
-            );
-            let up = DVec3::new(looking.x, looking.y, -looking.z);
-            let mut basis = Basis::<malus_optics::Carried>::new(-up, DVec3::new(0.6, 0.8, 0.0));
-            let mut light = Stokes::<4, _>::new([1.0, 0.4, -0.5, 0.6]);
-            if pane {
-                let normal = DVec3::new(10.0, 1.0, 1.0).cross(DVec3::Y).normalize();
-                let (cos, sin2) = malus_optics::angle_of_incidence(-up, normal);
-                let (incidence, _) = Basis::<Incidence>::mirror(-up, normal);
-                let through = Material::Pane { n: 1.7, tau: 0.9 }.through(cos, sin2);
-                light = (through * (Rotator::new(&basis, &incidence) * light)).carried();
-                basis = Basis::<Emergence>::new(-up, incidence.axis()).carried();
-            }
-            let (cos, sin2) = malus_optics::angle_of_incidence(-up, DVec3::Z);
-            let (incidence, emergence) = Basis::<Incidence>::mirror(-up, DVec3::Z);
-            let mirror = material.mirror(cos, sin2);
-            light = (mirror * (Rotator::new(&basis, &incidence) * light)).carried();
-            let sensor = Basis::<Sensor>::new(-looking, AXIS);
-            let light = Rotator::new(&emergence.carried(), &sensor) * light;
-            let exact = light.components().map(|c| c * 7.0 / PI);
-            if pane {
-                // What the underside of the sheet mirrors goes to the black floor again: at most R² of it comes here.
-                let digits = if matches!(material, Material::Mixture { index: Index::Relative { k, .. }, .. } if *k > 0.0)
-                {
-                    1.0
-                } else {
-                    0.2
-                };
-                assert!(
-                    (reading.stokes[0] - exact[0]).abs() < digits * exact[0],
-                    "{reading:?} {exact:?}"
-                );
-            } else {
-                assert_stokes(text, &reading, exact, 1e-9, 2e-2);
-            }
-        }
+        let floor = format!(
+            "[[shape]]
+            kind = 'rectangle'
+            origin = [-5, -5, 0]
+            u = [10, 0, 0]
+            v = [0, 10, 0]
+            material = 'floor'
+            [material.floor]
+            {text}"
+        );
+        // tan θ = 1.5.
+        let looking = DVec3::new(1.5 * 0.8, 1.5 * 0.6, -1.0).normalize();
+        let scene = format!("{PANEL}{floor}");
+        let reading = sight(
+            &scene,
+            "[-0.8, -0.6, 0.6]",
+            looking,
+            "[0.2, 1, 0.4]",
+            262_144,
+        );
+        let down = DVec3::new(-looking.x, -looking.y, looking.z);
+        let lamp = Basis::<malus_optics::Carried>::new(down, DVec3::new(0.6, 0.8, 0.0));
+        let light = Stokes::<4, _>::new([1.0, 0.4, -0.5, 0.6]);
+        let (cos, sin2) = malus_optics::angle_of_incidence(down, DVec3::Z);
+        let (incidence, emergence) = Basis::<Incidence>::mirror(down, DVec3::Z);
+        let mirrored = material.mirror(cos, sin2) * (Rotator::new(&lamp, &incidence) * light);
+        let sensor = Basis::<Sensor>::new(-looking, AXIS);
+        let light = Rotator::new(&emergence.carried(), &sensor) * mirrored.carried();
+        let exact = light.components().map(|c| c * 7.0 / PI);
+        assert_stokes(text, &reading, exact, 1e-9, 2e-2);
     }
+}
+
+#[test]
+fn a_radiance_looks_at_a_lamp_through_a_pane() {
+    let sheet = "[[shape]]
+        kind = 'rectangle'
+        origin = [-5, -5, 1.6]
+        u = [10, 1, 1]
+        v = [0, 10, 0]
+        material = 'pane'
+        [material.pane]
+        kind = 'pane'
+        n = 1.7
+        tau = 0.9\n";
+    let looking = DVec3::new(1.2, 0.5, 1.0).normalize();
+    let scene = format!("{PANEL}{sheet}");
+    let reading = sight(
+        &scene,
+        "[-0.8, -0.6, 0.6]",
+        looking,
+        "[0.2, 1, 0.4]",
+        65_536,
+    );
+    let lamp = Basis::<malus_optics::Carried>::new(-looking, DVec3::new(0.6, 0.8, 0.0));
+    let light = Stokes::<4, _>::new([1.0, 0.4, -0.5, 0.6]);
+    let normal = DVec3::new(10.0, 1.0, 1.0).cross(DVec3::Y).normalize();
+    let (cos, sin2) = malus_optics::angle_of_incidence(-looking, normal);
+    let (incidence, _) = Basis::<Incidence>::mirror(-looking, normal);
+    let through = Material::Pane { n: 1.7, tau: 0.9 }.through(cos, sin2);
+    let passed = through * (Rotator::new(&lamp, &incidence) * light);
+    let onward = Basis::<Emergence>::new(-looking, incidence.axis()).carried();
+    let light = Rotator::new(&onward, &Basis::<Sensor>::new(-looking, AXIS)) * passed.carried();
+    let exact = light.components().map(|c| c * 7.0 / PI);
+    assert_stokes("pane", &reading, exact, 1e-9, 2e-2);
 }
 
 /// L = ρ E/π with E from a sensor on the same place of the wall.
