@@ -42,7 +42,13 @@ pub fn run(command: &args::Run) -> Result<End, Failure> {
         .map_err(Failure::run)?;
     let interrupt = Interrupt::listen().map_err(Failure::run)?;
     let (results, seconds) = pool.install(|| compute(command, &scene, &settings, &interrupt));
-    warn(&results.warnings);
+    let mut warnings = scene.warnings.clone();
+    let found = [results.warnings.as_slice(), &dark(&results)].concat();
+    warn(&found);
+    warnings.extend(found);
+    let digests: Vec<Digest> = results.groups.iter().map(Digest::of).collect();
+    // Before the pictures, which may take longer than all else.
+    write(command, &scene, &results, &digests, &directory).map_err(Failure::run)?;
     let pictured = if command.no_pictures {
         &[][..]
     } else {
@@ -51,6 +57,7 @@ pub fn run(command: &args::Run) -> Result<End, Failure> {
     let mut complete = results.complete;
     for camera in pictured {
         if interrupt.asked() {
+            complete = false;
             break;
         }
         let taken = pool.install(|| shoot(command, &scene, &settings, camera, &interrupt));
@@ -60,13 +67,14 @@ pub fn run(command: &args::Run) -> Result<End, Failure> {
     let circumstances = Circumstances {
         seconds,
         threads,
+        complete,
         repeat: command.repeating(results.samples),
-        warnings: [scene.warnings.as_slice(), &results.warnings].concat(),
+        warnings,
     };
-    let digests: Vec<Digest> = results.groups.iter().map(Digest::of).collect();
+    // The summary last, so that where it is, everything is.
     let summary = summary::json(&scene, &settings, &results, &circumstances);
-    let summary = summary.map_err(Failure::run)?;
-    write(command, &scene, &results, &digests, &summary, &directory).map_err(Failure::run)?;
+    let written = summary.and_then(|summary| directory.write("summary.json", &summary));
+    written.map_err(Failure::run)?;
     if !command.quiet {
         let text = overview::text(&scene, &results, &digests, &circumstances, directory.path());
         print(&text).map_err(Failure::run)?;
@@ -164,13 +172,23 @@ fn shoot(
     picture
 }
 
-/// Writes all files; the summary last, so that where it is, everything is.
+/// Says if the sensors lie in the dark.
+fn dark(results: &Results) -> Vec<String> {
+    let text = "no light has reached any sensor point: is a lamp inside a closed solid or behind a wall, or does it face \
+                away? Emission is on the side of a surface's normal only";
+    results
+        .are_dark()
+        .then(|| text.into())
+        .into_iter()
+        .collect()
+}
+
+/// Writes what the sensors read.
 fn write(
     command: &args::Run,
     scene: &Scene,
     results: &Results,
     digests: &[Digest],
-    summary: &[u8],
     directory: &Directory,
 ) -> anyhow::Result<()> {
     let sensors = rows::sensors(scene, results)?;
@@ -183,7 +201,7 @@ fn write(
             directory.write(&format!("{}.svg", sensor.name), drawn.as_bytes())?;
         }
     }
-    directory.write("summary.json", summary)
+    Ok(())
 }
 
 /// Warnings, on stderr even where the run is quiet.

@@ -94,7 +94,8 @@ impl<'a> Readings<'a> {
         estimate
     }
 
-    /// Largest standard error of S0 as a share of max(S0, 10⁻³ · mean S0) over the free sensors.
+    /// Largest standard error of S0 as a share of max(S0, 10⁻³ · mean S0) over the free sensors; 0 where no light has
+    /// reached any of them, since there is no share of nothing.
     #[must_use]
     pub(crate) fn relative_error(&self, tally: &Tally) -> f64 {
         let free: Vec<Estimate> = (0..self.receivers.len())
@@ -102,6 +103,9 @@ impl<'a> Readings<'a> {
             .map(|sensor| self.s0(tally, sensor))
             .collect();
         let mean = free.iter().map(|e| e.mean).sum::<f64>() / free.len().max(1) as f64;
+        if mean <= 0.0 {
+            return 0.0;
+        }
         free.iter()
             .filter(|e| e.standard_error > 0.0)
             .map(|e| e.standard_error / e.mean.max(1e-3 * mean))
