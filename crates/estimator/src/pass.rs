@@ -1,6 +1,7 @@
 //! Which models one run computes, and which walks serve which of them.
 
 use crate::emitters::Emitters;
+use crate::glints::Glints;
 use crate::medium::Medium;
 use crate::mirrors::Mirrors;
 use crate::trace::Techniques;
@@ -122,14 +123,17 @@ pub(crate) struct Passes<'a> {
 pub(crate) struct Modelled {
     materials: Vec<Material>,
     mirrors: Mirrors,
+    glints: Glints,
 }
 
 impl Modelled {
     /// The scene as a model has it.
     pub(crate) fn new(scene: &Scene, model: Model) -> Self {
         let materials = materials_of(model, &scene.materials);
+        let mirrors = Mirrors::new(&scene.surfaces, &materials);
         Self {
-            mirrors: Mirrors::new(&scene.surfaces, &materials),
+            glints: Glints::new(&scene.surfaces, &materials, &mirrors),
+            mirrors,
             materials,
         }
     }
@@ -141,6 +145,7 @@ impl Modelled {
             materials: &self.materials,
             emitters,
             mirrors: &self.mirrors,
+            glints: &self.glints,
             panes: self.materials.iter().any(|m| m.optics.is_pane()),
         }
     }

@@ -6,6 +6,7 @@ use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::exact;
+use crate::glints::Aim;
 use crate::ledger::Ledger;
 use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
@@ -103,11 +104,20 @@ fn run_with<const N: usize>(
         seed: settings.seed,
     };
     let unmet = match &cells {
-        Some(cells) => direct::unmet(&passes.main, cells),
-        None if techniques.gather => unmet(&passes, &emitters),
-        None => Unmet::default(),
+        Some(cells) => vec![direct::unmet(&passes.main, cells); receivers.len()],
+        None if techniques.gather => unmet(&passes, &emitters, &receivers),
+        None => vec![Unmet::default(); receivers.len()],
     };
-    let readings = Readings::new(scene, channels, &receivers, &allocation, &exact, unmet);
+    let shared = techniques.mirrored;
+    let readings = Readings::new(
+        scene,
+        channels,
+        &receivers,
+        &allocation,
+        &exact,
+        unmet,
+        shared,
+    );
 
     let mut tally = engine.tally();
     let mut taken = 0;
@@ -189,27 +199,32 @@ fn run_with<const N: usize>(
     }
 }
 
-/// What may lie in mirrors that nothing looks into, and has not been met by chance yet.
-fn unmet(passes: &Passes, emitters: &Emitters) -> Unmet {
-    let share = |medium: &Medium| {
-        if passes.techniques.mirrored {
-            medium.mirrors.unseen()
-        } else {
-            f64::from(u8::from(has_mirrors(medium.materials)))
+/// What may lie for each sensor in mirrors that nothing looks into, and has not been met by chance yet.
+fn unmet(passes: &Passes, emitters: &Emitters, receivers: &[Receiver]) -> Vec<Unmet> {
+    let all = emitters.unmet();
+    // The most that there can be of it is what such mirrors can send on; the least share of it is met by walks that are
+    // aimed at them.
+    let of_one = |medium: &Medium, receiver: &Receiver| {
+        if !passes.techniques.mirrored {
+            return (1.0, f64::from(u8::from(has_mirrors(medium.materials))));
         }
+        let aim = Aim::new(medium.glints, medium.surfaces, receiver);
+        let one = aim.map_or(1.0, |aim| aim.greatest());
+        (one, medium.mirrors.unseen())
     };
-    let share = passes.media().map(share).fold(0.0, f64::max);
-    if std::env::var("DBG").is_ok() { eprintln!("DBG share {share} {:?}", emitters.unmet()); }
-    let unmet = emitters.unmet();
-    if share > 0.0 {
-        // The most that there can be of it is what such mirrors can send on.
-        Unmet {
-            most: unmet.most * share,
-            ..unmet
-        }
-    } else {
-        Unmet::default()
-    }
+    receivers
+        .iter()
+        .map(|receiver| {
+            let shares = passes.media().map(|medium| of_one(medium, receiver));
+            let (one, most) = shares.fold((0.0, 0.0), |(a, b): (f64, f64), (c, d)| {
+                (a.max(if d > 0.0 { c } else { 0.0 }), b.max(d))
+            });
+            Unmet {
+                one: all.one * one,
+                most: all.most * most,
+            }
+        })
+        .collect()
 }
 
 fn representation_reason(scene: &Scene, settings: &Settings) -> String {
