@@ -591,7 +591,7 @@ fn tested(mirrors: u32) -> f64 {
 }
 
 /// Share of diffuse light that a reflector mirrors, for the state of light that it mirrors most of.
-fn reflectance(optics: &malus_optics::Material) -> f64 {
+pub(crate) fn reflectance(optics: &malus_optics::Material) -> f64 {
     const STEPS: i32 = 32;
     // ∫ R 2μ dμ by the midpoint rule in μ².
     let steps = (0..STEPS).map(|step| {

@@ -1,16 +1,19 @@
 //! A run: replicas taken further in steps until a stopping rule holds.
 
+use crate::allocation::Allocation;
 use crate::choose::{blind_spots, erratic, techniques};
 use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::exact;
+use crate::glints::Aim;
 use crate::ledger::Ledger;
 use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
 use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
 use crate::results::{Answer, Progress, Results, Stop};
+use crate::sight::Sight;
 use crate::statistics::REPLICAS;
 use crate::trace::LONGEST;
 use malus_optics::Representation;
@@ -62,7 +65,7 @@ fn run_with<const N: usize>(
 ) -> Results {
     let channels = Channels::new(scene, settings, representation);
     let emitters = Emitters::new(scene);
-    let receivers = Receiver::all(scene);
+    let mut receivers = Receiver::all(scene);
     let (techniques, estimator_reason) = techniques(settings.estimator, &receivers);
     let main = Modelled::new(scene, settings.model);
     let apart = channels.apart.map(|_| match settings.model {
@@ -78,24 +81,43 @@ fn run_with<const N: usize>(
         let side = settings.cell.unwrap_or(direct::SIDE);
         Cells::new(&scene.surfaces, &receivers, side)
     });
+    let sight = techniques
+        .gather
+        .then(|| Sight::new(&scene.surfaces, &emitters, &mut receivers));
+    let exact = match cells {
+        // Counted like all other light.
+        Some(_) => vec![[0.0; N]; receivers.len()],
+        None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref()),
+    };
+    let allocation = if techniques.gather && techniques.local > 0.0 {
+        let exact = |sensor: usize| exact[sensor][0];
+        Allocation::piloted(&passes, &receivers, exact, settings.seed)
+    } else {
+        Allocation::even(receivers.len())
+    };
     let engine = Engine::<N> {
         passes,
         channels,
         receivers: &receivers,
+        allocation: &allocation,
         cells: cells.as_ref(),
         seed: settings.seed,
     };
-    let exact = match cells {
-        // Counted like all other light.
-        Some(_) => vec![[0.0; N]; receivers.len()],
-        None => exact::from_sources::<N>(&passes.main, &receivers),
-    };
     let unmet = match &cells {
-        Some(cells) => direct::unmet(&passes.main, cells),
-        None if techniques.gather => unmet(&passes, &emitters),
-        None => Unmet::default(),
+        Some(cells) => vec![direct::unmet(&passes.main, cells); receivers.len()],
+        None if techniques.gather => unmet(&passes, &emitters, &receivers),
+        None => vec![Unmet::default(); receivers.len()],
     };
-    let readings = Readings::new(scene, channels, &receivers, &exact, unmet);
+    let shared = techniques.mirrored;
+    let readings = Readings::new(
+        scene,
+        channels,
+        &receivers,
+        &allocation,
+        &exact,
+        unmet,
+        shared,
+    );
 
     let mut tally = engine.tally();
     let mut taken = 0;
@@ -177,26 +199,32 @@ fn run_with<const N: usize>(
     }
 }
 
-/// What may lie in mirrors that nothing looks into, and has not been met by chance yet.
-fn unmet(passes: &Passes, emitters: &Emitters) -> Unmet {
-    let share = |medium: &Medium| {
-        if passes.techniques.mirrored {
-            medium.mirrors.unseen()
-        } else {
-            f64::from(u8::from(has_mirrors(medium.materials)))
+/// What may lie for each sensor in mirrors that nothing looks into, and has not been met by chance yet.
+fn unmet(passes: &Passes, emitters: &Emitters, receivers: &[Receiver]) -> Vec<Unmet> {
+    let all = emitters.unmet();
+    // The most that there can be of it is what such mirrors can send on; the least share of it is met by walks that are
+    // aimed at them.
+    let of_one = |medium: &Medium, receiver: &Receiver| {
+        if !passes.techniques.mirrored {
+            return (1.0, f64::from(u8::from(has_mirrors(medium.materials))));
         }
+        let aim = Aim::new(medium.glints, medium.surfaces, receiver);
+        let one = aim.map_or(1.0, |aim| aim.greatest());
+        (one, medium.mirrors.unseen())
     };
-    let share = passes.media().map(share).fold(0.0, f64::max);
-    let unmet = emitters.unmet();
-    if share > 0.0 {
-        // The most that there can be of it is what such mirrors can send on.
-        Unmet {
-            most: unmet.most * share,
-            ..unmet
-        }
-    } else {
-        Unmet::default()
-    }
+    receivers
+        .iter()
+        .map(|receiver| {
+            let shares = passes.media().map(|medium| of_one(medium, receiver));
+            let (one, most) = shares.fold((0.0, 0.0), |(a, b): (f64, f64), (c, d)| {
+                (a.max(if d > 0.0 { c } else { 0.0 }), b.max(d))
+            });
+            Unmet {
+                one: all.one * one,
+                most: all.most * most,
+            }
+        })
+        .collect()
 }
 
 fn representation_reason(scene: &Scene, settings: &Settings) -> String {
