@@ -6,7 +6,7 @@ use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::exact;
-use crate::glints::Aim;
+use crate::gather::Aims;
 use crate::ledger::Ledger;
 use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
@@ -89,9 +89,10 @@ fn run_with<const N: usize>(
         Some(_) => vec![[0.0; N]; receivers.len()],
         None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref()),
     };
+    let aims = Aims::all(&passes, &receivers);
     let allocation = if techniques.gather && techniques.local > 0.0 {
         let exact = |sensor: usize| exact[sensor][0];
-        Allocation::piloted(&passes, &receivers, exact, settings.seed)
+        Allocation::piloted(&passes, &receivers, &aims, exact, settings.seed)
     } else {
         Allocation::even(receivers.len())
     };
@@ -100,12 +101,13 @@ fn run_with<const N: usize>(
         channels,
         receivers: &receivers,
         allocation: &allocation,
+        aims: &aims,
         cells: cells.as_ref(),
         seed: settings.seed,
     };
     let unmet = match &cells {
         Some(cells) => vec![direct::unmet(&passes.main, cells); receivers.len()],
-        None if techniques.gather => unmet(&passes, &emitters, &receivers),
+        None if techniques.gather => unmet(&passes, &emitters, &aims),
         None => vec![Unmet::default(); receivers.len()],
     };
     let shared = techniques.mirrored;
@@ -200,31 +202,26 @@ fn run_with<const N: usize>(
 }
 
 /// What may lie for each sensor in mirrors that nothing looks into, and has not been met by chance yet.
-fn unmet(passes: &Passes, emitters: &Emitters, receivers: &[Receiver]) -> Vec<Unmet> {
+fn unmet(passes: &Passes, emitters: &Emitters, aims: &[Aims]) -> Vec<Unmet> {
     let all = emitters.unmet();
-    // The most that there can be of it is what such mirrors can send on; the least share of it is met by walks that are
-    // aimed at them.
-    let of_one = |medium: &Medium, receiver: &Receiver| {
-        if !passes.techniques.mirrored {
-            return (1.0, f64::from(u8::from(has_mirrors(medium.materials))));
+    let share = |medium: &Medium| {
+        if passes.techniques.mirrored {
+            medium.mirrors.unseen()
+        } else {
+            f64::from(u8::from(has_mirrors(medium.materials)))
         }
-        let aim = Aim::new(medium.glints, medium.surfaces, receiver);
-        let one = aim.map_or(1.0, |aim| aim.greatest());
-        (one, medium.mirrors.unseen())
     };
-    receivers
-        .iter()
-        .map(|receiver| {
-            let shares = passes.media().map(|medium| of_one(medium, receiver));
-            let (one, most) = shares.fold((0.0, 0.0), |(a, b): (f64, f64), (c, d)| {
-                (a.max(if d > 0.0 { c } else { 0.0 }), b.max(d))
-            });
-            Unmet {
-                one: all.one * one,
-                most: all.most * most,
-            }
-        })
-        .collect()
+    // The most that there can be of it is what such mirrors can send on.
+    let most = passes.media().map(share).fold(0.0, f64::max);
+    let one = |aims: &Aims| match passes.techniques.mirrored {
+        true => aims.greatest(),
+        false => most,
+    };
+    let unmet = |aims: &Aims| Unmet {
+        one: all.one * one(aims),
+        most: all.most * most,
+    };
+    aims.iter().map(unmet).collect()
 }
 
 fn representation_reason(scene: &Scene, settings: &Settings) -> String {
