@@ -1,7 +1,7 @@
 """Actual errors against a reference, and what repeated runs cost."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,8 @@ class Outcome:
     rms: float
     worst: float
     """RMS over the seeds at the worst sensor."""
+    mean: float
+    """Signed error, over sensors and seeds."""
     s1: float | None
     ds0: float | None
     seconds: float
@@ -22,6 +24,9 @@ class Outcome:
     quartiles: tuple
     """Lower and upper quartile of `seconds`."""
 
+    def with_difference(self, ds0):
+        return replace(self, ds0=ds0)
+
 
 def outcome(solutions, reference):
     s0 = reference.values["s0"]
@@ -30,6 +35,7 @@ def outcome(solutions, reference):
     return Outcome(
         rms=_root(squares.mean()),
         worst=_root(squares.max()),
+        mean=float(np.mean([solution.s0 / s0 - 1.0 for solution in solutions])),
         s1=_rms(solutions, reference, "s1"),
         ds0=_rms(solutions, reference, "ds0"),
         seconds=float(np.median(seconds)),

@@ -1,6 +1,6 @@
 """What every entrant gives back, and what it can be asked for."""
 
-import os
+import resource
 import subprocess
 import time
 from dataclasses import dataclass, field, replace
@@ -60,6 +60,7 @@ def timed(command, stdin=b"", limit=None):
 
     Raises RuntimeError with what it said where it fails, TooSlow after `limit` seconds.
     """
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     begun = time.perf_counter()
     child = subprocess.Popen(
         [str(word) for word in command],
@@ -67,7 +68,6 @@ def timed(command, stdin=b"", limit=None):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
     )
-    before = os.times()
     try:
         stdout, stderr = child.communicate(stdin, limit)
     except subprocess.TimeoutExpired as expired:
@@ -75,9 +75,9 @@ def timed(command, stdin=b"", limit=None):
         child.communicate()
         raise TooSlow from expired
     seconds = time.perf_counter() - begun
-    after = os.times()
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if child.returncode != 0:
         said = stderr.decode(errors="replace").strip()
         raise RuntimeError(f"{' '.join(map(str, command))}: status {child.returncode}: {said}")
-    cpu = after.children_user + after.children_system
-    return Process(stdout, seconds, cpu - before.children_user - before.children_system)
+    cpu = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    return Process(stdout, seconds, cpu)

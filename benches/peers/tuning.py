@@ -14,8 +14,8 @@ FINALISTS = 3
 STEPS = 6
 # Aimed at, so that the race's own seeds meet the target too.
 AIM = 0.95
-# A setting that takes so many times the best projected cost is given up.
-PATIENCE = 2.0
+# A setting without a knob that takes so many times the best projected time is given up, but not within a second.
+PATIENCE, SHORTEST = 2.0, 1.0
 # The most that one step of the knob may change.
 LEAP = 16.0
 
@@ -28,19 +28,18 @@ class Trial:
 
 def tuned(entrant, reference, target, seeds):
     """Trials that meet the target, the cheapest in CPU time first."""
-    looks = []
-    best = math.inf
+    trials = []
+    limit = None
     for setting in entrant.settings():
-        limit = PATIENCE * best if best < math.inf and setting.effort is None else None
-        trial = _try(entrant, setting, reference, seeds, limit)
+        trial = _try(entrant, setting, reference, seeds, None if setting.effort else limit)
         if trial is None:
             continue
-        looks.append((_projected(trial, target), trial))
-        best = min(best, looks[-1][0])
-    looks.sort(key=lambda look: look[0])
-    finalists = [trial for _, trial in looks if trial.setting.effort is not None][:FINALISTS]
-    trials = [trial for _, trial in looks]
-    for trial in finalists:
+        trials.append(trial)
+        patience = max(SHORTEST, PATIENCE * trial.outcome.seconds * _shortfall(trial, target))
+        limit = min(patience, limit or math.inf)
+    with_knob = [trial for trial in trials if trial.setting.effort is not None]
+    with_knob.sort(key=lambda trial: trial.outcome.cpu * _shortfall(trial, target))
+    for trial in with_knob[:FINALISTS]:
         trials += _refined(entrant, trial, reference, target, seeds)
     met = [trial for trial in trials if trial.outcome.rms <= target]
     return sorted(met, key=lambda trial: trial.outcome.cpu)
@@ -68,12 +67,11 @@ def _try(entrant, setting, reference, seeds, limit=None):
     return trial
 
 
-def _projected(trial, target):
-    """CPU time to the target: the error of what has a knob falls with the square root of the work."""
-    met = trial.outcome.rms <= target
+def _shortfall(trial, target):
+    """How many times the work it takes to the target: the error of what has a knob falls with the work's square root."""
     if trial.setting.effort is None:
-        return trial.outcome.cpu if met else math.inf
-    return trial.outcome.cpu * (trial.outcome.rms / target) ** 2
+        return 1.0 if trial.outcome.rms <= target else math.inf
+    return (trial.outcome.rms / target) ** 2
 
 
 def _refined(entrant, trial, reference, target, seeds):
