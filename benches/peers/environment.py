@@ -10,7 +10,8 @@ HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parent.parent
 WORK = REPOSITORY / "target" / "peers"
 VENV = WORK / "venv"
-MALUS = REPOSITORY / "target" / "release" / "malus"
+# The variable names another program to race, such as an older one.
+MALUS = Path(os.environ.get("MALUS", REPOSITORY / "target" / "release" / "malus")).resolve()
 
 # Mitsuba's kernels need an instruction that LLVM 15 cannot select: "fmaximum".
 OLDEST_LLVM = 16
@@ -32,7 +33,9 @@ def enter():
 
 
 def build_malus():
-    """The program, as its users build it."""
+    """The program, as its users build it, unless another one is named."""
+    if "MALUS" in os.environ:
+        return
     subprocess.run(["cargo", "build", "--release", "--locked"], cwd=REPOSITORY, check=True)
 
 

@@ -21,6 +21,19 @@ def triangles(path):
     return {(name, None): np.concatenate(parts) for name, parts in found.items()}
 
 
+def write_without(path, objects, target):
+    """Copies a file, its `objects` marked to be left out."""
+    document, binary = _chunks(path)
+    for node in document["nodes"]:
+        if node.get("name") in objects:
+            node.setdefault("extras", {})["malus_ignore"] = True
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text
+    chunks += struct.pack("<I4s", len(binary), b"BIN\0") + binary
+    target.write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks)
+
+
 def _chunks(path):
     data = path.read_bytes()
     length = struct.unpack_from("<I", data, 12)[0]

@@ -1,8 +1,8 @@
 """The paper's room at a = 1 by images alone: exact values, made without chance and without malus.
 
-All walls are mirrors of glass, so light reaches a point of the floor straight from the disc or from one of its images in the
-unfolded cube. Each image is integrated by quadrature; along each line the walls it crosses reflect by Fresnel's formulae,
-with the Stokes vector turned from plane to plane of incidence, and the black lamp itself blocks what meets it.
+All walls are mirrors of glass, so light reaches a point of the floor straight from the disc or from one of its images in
+the unfolded cube. Each image is integrated by quadrature; along each line the walls that it crosses reflect by Fresnel's
+formulae, with the Stokes vector turned from plane to plane of incidence, and the black lamp itself blocks what meets it.
 """
 
 import numpy as np
@@ -54,7 +54,7 @@ def _disc():
 
 
 def _walls(origin, line, i, j, m):
-    """The axes (0, 1, 2) of the walls that each line crosses on its way from the floor, and whether the lamp is in its way."""
+    """The axes of the walls that each line crosses on its way from the floor, and whether the lamp is in its way."""
     crossings, axes = [], []
     blocked = np.zeros(len(line), bool)
     for axis, planes in ((0, _planes(i)), (1, _planes(j)), (2, range(1, 2 * m + 1))):

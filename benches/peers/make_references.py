@@ -1,7 +1,7 @@
-"""Makes the references of the races, once: `python make_references.py NAME…`, or all. Minutes to an hour of computing.
+"""Makes the references of the races: `python make_references.py NAME…`, or all. Minutes to an hour of computing.
 
-Where a = 1 in the paper's room the values are exact (images.py). For the others Mitsuba's path integrator is run long, in
-batches whose spread gives the standard errors. None of it uses malus but for reading the office's materials.
+Where a = 1 in the paper's room the values are exact (images.py). For the others Mitsuba's path integrator is run long,
+in batches whose spread gives the standard errors. malus only reads the office's materials and says where its points are.
 """
 
 import csv
@@ -38,14 +38,14 @@ def glossy_room(walks=1 << 18):
     return FLOOR, values
 
 
-def blender_office(walks=1 << 17):
+def blender_office(walks=1 << 13):
     import rooms
     import surfaces
     from stage import Stage
 
-    room = rooms.BLENDER_OFFICE
+    room = rooms.blender_office()
     points, normals = room.layout()
-    exported = surfaces.of_scene(room.scene, room.mesh)
+    exported = surfaces.of_scene(room)
     batches = _batches({"points": points, "normals": normals, "surfaces": exported}, walks, Stage)
     return points, _summary(batches)
 
@@ -59,7 +59,7 @@ REFERENCES = {
 
 
 def _batches(room, walks, stage):
-    """S0, S1 and ds0 of every batch: (batch, quantity, point). The scalar run takes the same walks, so ds0 is paired."""
+    """S0, S1 and ds0 of every batch: (batch, quantity, point). The scalar run takes the same walks: ds0 is paired."""
     # Mirrors are drawn more often than they reflect: light by way of them is where the noise is.
     polarised, scalar = (stage(room, scalar=model, mirror_share=0.5) for model in (False, True))
     found = []
@@ -78,7 +78,7 @@ def _summary(batches):
 
 
 def image_stage():
-    """A stage that aims half of its first rays at the lamp's images in the walls: found by chance they are all noise."""
+    """A stage that aims half of its first rays at the lamp's images in the walls, which chance finds but rarely."""
     from stage import Stage
     from surfaces import LAMP_RADIUS
 
@@ -117,6 +117,7 @@ def image_stage():
 
 def main(names):
     os.environ.setdefault("DRJIT_LIBLLVM_PATH", environment.llvm())
+    environment.build_malus()
     for name in names or REFERENCES:
         points, values = REFERENCES[name]()
         with open(environment.HERE / "references" / f"{name}.csv", "w", newline="") as file:

@@ -68,6 +68,8 @@ def layout(room):
     """Points and normals of a room's sensor that are not inside furniture."""
     with tempfile.TemporaryDirectory() as folder:
         command = [environment.MALUS, "run", room.scene, "-o", folder, "--samples", 1]
+        for override in room.overrides:
+            command += ["--set", override]
         timed([*command, "--quiet", "--no-pictures"])
         rows = _free_points(Path(folder) / "sensors.csv", room.sensor)
     places = np.array([[float(row[f"{axis}_m"]) for axis in "xyz"] for row in rows])

@@ -23,7 +23,7 @@ class Mitsuba:
         self.room, self.threads = room, threads
         reference = room.reference()
         if room.mesh:
-            exported = surfaces.of_scene(room.scene, room.mesh)
+            exported = surfaces.of_scene(room)
         else:
             exported = surfaces.unit_room(room.share)
         self.stage = environment.WORK / f"{room.name}.json"

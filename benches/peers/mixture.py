@@ -1,11 +1,11 @@
 """Eq. 21 as a BSDF of Mitsuba 3: a share a of mirror-like Fresnel reflection, the rest scattered by Lambert's law.
 
-Written here because Mitsuba's own `blendbsdf` is biased where one of its parts is a mirror. The transport stays Mitsuba's.
+Written here because Mitsuba's own `blendbsdf` is biased where one of its parts is a mirror. The transport is Mitsuba's.
 """
 
 
 def register(mi, dr):
-    """Makes the plugins `mixture` known to the current, polarised variant."""
+    """Makes the plugin `mixture` known to the current, polarised variant."""
 
     class Mixture(mi.BSDF):
         """Keys: rho, a, n, k; two_sided; scalar (reflect by the mean of Rs and Rp, unpolarised);

@@ -20,10 +20,7 @@ def main():
 
     races = {race.name: race for race in lineup()}
     arguments = parse(races)
-    if arguments.malus:
-        environment.MALUS = arguments.malus.resolve()
-    else:
-        environment.build_malus()
+    environment.build_malus()
     seeds = arguments.seeds or (QUICK_SEEDS if arguments.quick else SEEDS)
     trial_seeds = QUICK_TRIAL_SEEDS if arguments.quick else TRIAL_SEEDS
     entries, agreements, raw = [], [], []
@@ -42,7 +39,7 @@ def lineup():
     """All races. Against rtrace, which is one process a thread, both run on one."""
     from mitsuba3 import Mitsuba
     from radiance import Radiance
-    from rooms import BLENDER_OFFICE, REFERENCE_OFFICE, UNIT_ROOMS
+    from rooms import REFERENCE_OFFICE, UNIT_ROOMS, blender_office
     from trial import Race
 
     return [
@@ -53,7 +50,7 @@ def lineup():
         Race(UNIT_ROOMS[1], 0.01, Mitsuba, 2),
         Race(UNIT_ROOMS[1], 0.001, Mitsuba, 2),
         Race(REFERENCE_OFFICE, 0.003, Radiance, 1),
-        Race(BLENDER_OFFICE, 0.01, Mitsuba, 2),
+        Race(blender_office(), 0.01, Mitsuba, 2),
     ]
 
 
@@ -62,7 +59,6 @@ def parse(races):
     parser.add_argument("races", nargs="*", metavar="RACE", help=f"one of {', '.join(races)} (default: all)")
     parser.add_argument("--quick", action="store_true", help=f"{QUICK_SEEDS} seeds instead of {SEEDS}")
     parser.add_argument("--seeds", type=int, help="seeds raced with")
-    parser.add_argument("--malus", type=Path, help="program to race (default: built here in release)")
     parser.add_argument("--output", type=Path, default=environment.WORK / "results", help="folder of the tables")
     arguments = parser.parse_args()
     for name in arguments.races:

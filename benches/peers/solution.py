@@ -30,8 +30,8 @@ class Solution:
 class Setting:
     """One point of an entrant's published grid.
 
-    `effort` is proportional to the work asked for, so that the error falls about with its square root; a setting without
-    a knob has none.
+    `effort` is proportional to the work asked for, so the error falls about with its square root; a setting without a
+    knob has none.
     """
 
     label: str

@@ -1,4 +1,4 @@
-"""Rooms as triangles with the values of their materials, for programs that read neither TOML nor glTF custom properties.
+"""Rooms as triangles with the values of their materials, for programs that know nothing of malus' scene files.
 
 A surface is a dict of `vertices`, `faces` (front by winding) and `material` (rho, a, n, k, exitance, two_sided).
 """
@@ -57,16 +57,17 @@ def _ceiling(rim, material):
     return {"vertices": np.vstack([rim, corners]), "faces": faces, "material": material}
 
 
-def of_scene(scene, mesh):
-    """A scene with one .glb file as malus understands it: values from `malus check --json`, triangles from the file.
+def of_scene(room):
+    """A room whose scene has one .glb file, as malus understands it: values from `malus check --json`, triangles from the file.
 
     Raises ValueError where the triangles or the area of a material are not those that malus counts.
     """
-    checked = subprocess.run(
-        [environment.MALUS, "check", "--json", scene], check=True, capture_output=True
-    )
+    command = [environment.MALUS, "check", "--json", room.scene]
+    for override in room.overrides:
+        command += ["--set", override]
+    checked = subprocess.run(command, check=True, capture_output=True)
     report = json.loads(checked.stdout)
-    triangles = glb.triangles(mesh)
+    triangles = glb.triangles(room.mesh)
     surfaces = []
     for material in report["materials"]:
         corners = triangles.pop((material["name"], material["object"]), None)
@@ -77,7 +78,7 @@ def of_scene(scene, mesh):
         ).sum() / 2
         if len(corners) != material["triangles"] or not math.isclose(area, material["area_m2"], rel_tol=1e-5):
             raise ValueError(
-                f"{mesh}: {material['name']} has {len(corners)} triangles and {area} m², "
+                f"{room.mesh}: {material['name']} has {len(corners)} triangles and {area} m², "
                 f"malus counts {material['triangles']} and {material['area_m2']}"
             )
         surfaces.append(
@@ -88,7 +89,7 @@ def of_scene(scene, mesh):
             }
         )
     if triangles:
-        raise ValueError(f"{mesh}: malus knows nothing of {sorted(map(str, triangles))}")
+        raise ValueError(f"{room.mesh}: malus knows nothing of {sorted(map(str, triangles))}")
     return surfaces
 
 

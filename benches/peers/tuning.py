@@ -1,4 +1,4 @@
-"""Which setting of an entrant reaches a target at the least cost: its whole grid is tried, then the best ones refined."""
+"""Which setting of an entrant reaches a target at the least cost: its whole grid is tried, the best are refined."""
 
 import math
 import sys
@@ -68,7 +68,7 @@ def _try(entrant, setting, reference, seeds, limit=None):
 
 
 def _shortfall(trial, target):
-    """How many times the work it takes to the target: the error of what has a knob falls with the work's square root."""
+    """How many times the work it takes to the target: with a knob, the error falls with the square root of the work."""
     if trial.setting.effort is None:
         return 1.0 if trial.outcome.rms <= target else math.inf
     return (trial.outcome.rms / target) ** 2
