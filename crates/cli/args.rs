@@ -1,8 +1,11 @@
 //! The command line as typed.
 
+use crate::portion::Portion;
+use crate::submit::Cluster;
 use clap::{Args, Parser, Subcommand};
 use malus_scene::Override;
-use std::path::PathBuf;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 
 /// Polarised light in rooms: illuminance or irradiance as a Stokes vector, with an error bar on every number.
 #[derive(Debug, Parser)]
@@ -27,12 +30,25 @@ Examples:
   malus run office.toml -o results/glossy --set material.floor.a=0.6
   malus run office.toml --seconds 60 --threads 4
   malus run office.toml --samples 65536 --seed 7     repeats to the byte on any machine
+  malus run office.toml --relative-error 1e-4 --resume        goes on after a reboot
+  malus run office.toml --samples 1048576 --shard 3/8         one part of eight, for malus merge
+  malus run office.toml --samples 1048576 --submit slurm --shards 8 --sbatch=--cpus-per-task=16 --wait
 
 Results: sensors.csv (one row a sensor point), grids.csv (one row a sensor), a plan <sensor>.svg of each \
 grid, and summary.json. A stop by error or by time prints the --samples that repeats it.
 
 Exit status: 0 done, 1 the run failed, 2 bad arguments or a bad scene, 130 interrupted (Ctrl-C \
 once: what is there is written and marked incomplete; twice: at once, without results).";
+
+const MERGE_EXAMPLES: &str = "\
+Examples:
+  malus merge results/office                       all shards lie in one directory
+  malus merge a/office b/office -o results/office  they were brought together from two machines
+
+The scene is read again, from where it was when the shards were computed or from --scene, and has to be the same: the \
+results have the bytes of a run in one piece. Shards stay where they are.
+
+Exit status: 0 done, 1 nothing can be written, 2 a shard is missing, there twice, unfinished, damaged or of another run.";
 
 const CHECK_EXAMPLES: &str = "\
 Examples:
@@ -59,6 +75,9 @@ pub enum Command {
     /// Compute a scene: writes tables, plans and a summary, prints a short table
     #[command(after_help = RUN_EXAMPLES)]
     Run(Box<Run>),
+    /// Join the shards of a run: writes the tables, plans, pictures and summary of the whole
+    #[command(after_help = MERGE_EXAMPLES)]
+    Merge(Merge),
     /// Read a scene and say what was understood and what is wrong with it; compute nothing
     #[command(after_help = CHECK_EXAMPLES)]
     Check(Check),
@@ -122,6 +141,38 @@ pub struct Run {
     pub no_pictures: bool,
 
     /// Show no progress and no table; warnings and errors stay
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// What of the run is computed, and how it survives.
+    #[command(flatten)]
+    pub portion: Portion,
+
+    /// Where it is computed.
+    #[command(flatten)]
+    pub cluster: Cluster,
+}
+
+/// `malus merge`.
+#[derive(Args, Debug)]
+pub struct Merge {
+    /// Directories with shards, as `malus run --shard` writes them
+    #[arg(value_name = "DIR", required = true)]
+    pub shards: Vec<PathBuf>,
+
+    /// Directory of the results [default: the first of the directories]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// The scene file, where it is no longer where the shards were computed
+    #[arg(long, value_name = "SCENE.toml")]
+    pub scene: Option<PathBuf>,
+
+    /// Draw no plans and write no pictures
+    #[arg(long)]
+    pub no_pictures: bool,
+
+    /// Show no table; warnings and errors stay
     #[arg(short, long)]
     pub quiet: bool,
 }
@@ -223,28 +274,50 @@ impl Run {
         self.set.iter().cloned().chain(options).collect()
     }
 
-    /// Options that repeat this run to the byte, as a shell takes them.
-    pub fn repeating(&self, samples: u64) -> String {
+    /// Options that say the same of the scene again, stopping rules left out.
+    pub fn words(&self) -> Vec<String> {
         const STOPS: [&str; 3] = ["run.samples", "run.relative_error", "run.seconds"];
-        let mut words = vec!["--samples".to_owned(), samples.to_string()];
+        let mut words = Vec::new();
         for entry in &self.set {
             if !STOPS.contains(&entry.key.as_str()) {
                 words.push("--set".to_owned());
-                words.push(quoted(&format!("{}={}", entry.key, entry.value)));
+                words.push(format!("{}={}", entry.key, entry.value));
             }
         }
         for entry in self.keys() {
             if !STOPS.contains(&entry.key) {
                 words.push(format!("--{}", entry.option));
-                words.push(quoted(entry.value));
+                words.push(entry.value.to_owned());
             }
         }
+        words
+    }
+
+    /// Options that repeat this run to the byte, as a shell takes them.
+    pub fn repeating(&self, samples: u64) -> String {
+        let words = self.words();
+        let samples = ["--samples".to_owned(), samples.to_string()];
+        let words: Vec<String> = samples.iter().chain(&words).map(|it| quoted(it)).collect();
         words.join(" ")
+    }
+
+    /// The run that [`words`](Self::words) tells of, with a number of samples.
+    ///
+    /// # Errors
+    /// The words are none that it gives.
+    pub fn told(scene: &Path, words: &[String], samples: u64) -> Result<Self, clap::Error> {
+        let before = ["malus".into(), "run".into(), scene.as_os_str().to_owned()];
+        let samples = ["--samples".to_owned(), samples.to_string()];
+        let words = words.iter().chain(&samples).map(OsString::from);
+        match Arguments::try_parse_from(before.into_iter().chain(words))?.command {
+            Command::Run(run) => Ok(*run),
+            _ => unreachable!("run was asked for"),
+        }
     }
 }
 
 /// A word as a POSIX shell takes it.
-fn quoted(word: &str) -> String {
+pub fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_.,=/:+".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         word.to_owned()
@@ -293,6 +366,23 @@ mod tests {
     #[test]
     fn a_negative_number_is_a_value_to_be_judged_and_no_option() {
         assert_eq!(run(&["--samples", "-5"]).samples.as_deref(), Some("-5"));
+    }
+
+    #[test]
+    fn a_run_is_told_again_by_its_words() {
+        let run = run(&[
+            "--seconds",
+            "60",
+            "--seed",
+            "7",
+            "--set",
+            "material.\"Wall 1\".a=0",
+        ]);
+        let again = Run::told(&run.scene, &run.words(), 128).expect("the same");
+        assert_eq!((again.words(), &again.scene), (run.words(), &run.scene));
+        assert_eq!(again.repeating(128), run.repeating(128));
+        let stops = [&again.samples, &again.seconds, &again.relative_error];
+        assert_eq!(stops, [&Some("128".to_owned()), &None, &None]);
     }
 
     #[test]

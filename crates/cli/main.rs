@@ -10,19 +10,28 @@ mod failure;
 mod field;
 mod frame;
 mod interrupt;
+mod job;
+mod keeper;
 mod label;
+mod merge;
 mod number;
 mod output;
 mod overview;
 mod panel;
+mod part;
 mod picture;
 mod plan;
+mod portion;
 mod progress;
+mod report;
 mod rows;
 mod run;
 mod scale;
+mod shards;
+mod slurm;
 mod stop;
 mod student;
+mod submit;
 mod summary;
 mod svg;
 mod table;
@@ -35,6 +44,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let end = match Arguments::parse().command {
         Command::Run(command) => run::run(&command),
+        Command::Merge(command) => merge::merge(&command).map(|()| run::End::Complete),
         Command::Analyse(command) => analyse::analyse(&command).map(|()| run::End::Complete),
         Command::Check(command) => check::check(&command).map(|()| run::End::Complete),
     };

@@ -10,23 +10,36 @@ use crate::receiver::Receiver;
 use crate::trace::{Path, Techniques, Walk};
 use std::ops::Range;
 
-/// Adds the walks `range` of one sensor to its sums; for each of them so many are `launched` from the emitters.
+/// A sensor that walks are taken from.
+#[derive(Clone, Copy)]
+pub(crate) struct Observer<'a> {
+    /// The sensor.
+    pub receiver: &'a Receiver,
+    /// How the companions of its walks are aimed.
+    pub aims: &'a Aims<'a>,
+    /// Walks from the emitters for one of its own.
+    pub launched: f64,
+}
+
+/// Adds the walks `range` of one sensor to its sums.
 pub(crate) fn gather<const N: usize>(
     passes: &Passes,
     channels: &Channels,
-    receiver: &Receiver,
-    launched: f64,
+    observer: Observer,
     stream: Stream,
     range: Range<u64>,
     sums: &mut [f64],
 ) -> Effort {
+    let Observer {
+        receiver,
+        aims,
+        launched,
+    } = observer;
     let materials = passes.main.materials;
     let techniques = Techniques {
         local: launched * passes.techniques.local,
         ..passes.techniques
     };
-    let main_aim = aim(techniques, passes.main, receiver);
-    let apart_aim = passes.apart.and_then(|apart| aim(techniques, apart, receiver));
     let mut effort = Effort::default();
     let mut path = Path::default();
     for index in range {
@@ -37,7 +50,7 @@ pub(crate) fn gather<const N: usize>(
             medium: passes.main,
             receiver: *receiver,
             uniforms,
-            aim: main_aim.as_ref(),
+            aim: aims.main.as_ref(),
         };
         if let Some(channel) = channels.along {
             let mut scalar = Gathering::<1>::new(receiver);
@@ -59,7 +72,7 @@ pub(crate) fn gather<const N: usize>(
             let mut apart = Gathering::<1>::new(receiver);
             let way = Way {
                 medium,
-                aim: apart_aim.as_ref(),
+                aim: aims.apart.as_ref(),
                 ..way
             };
             effort += way.follow(&mut path, |path, part| {
@@ -71,10 +84,32 @@ pub(crate) fn gather<const N: usize>(
     effort
 }
 
-/// How companions are aimed at small mirrors.
-fn aim<'a>(techniques: Techniques, medium: Medium<'a>, receiver: &Receiver) -> Option<Aim<'a>> {
-    let small = techniques.mirrored.then_some(medium.glints)?;
-    Aim::new(small, medium.surfaces, receiver)
+/// How the companions of one sensor's walks are aimed at small mirrors.
+#[derive(Default)]
+pub(crate) struct Aims<'a> {
+    main: Option<Aim<'a>>,
+    apart: Option<Aim<'a>>,
+}
+
+impl<'a> Aims<'a> {
+    /// Those of every sensor.
+    pub(crate) fn all(passes: &Passes<'a>, receivers: &[Receiver]) -> Vec<Self> {
+        let aim = |medium: Medium<'a>, receiver: &Receiver| {
+            let small = passes.techniques.mirrored.then_some(medium.glints)?;
+            Aim::new(small, medium.surfaces, receiver)
+        };
+        let aims = |receiver: &Receiver| Self {
+            main: aim(passes.main, receiver),
+            apart: passes.apart.and_then(|apart| aim(apart, receiver)),
+        };
+        receivers.iter().map(aims).collect()
+    }
+
+    /// Greatest share of an emitter's exitance that one walk may bring which meets it in a small mirror.
+    pub(crate) fn greatest(&self) -> f64 {
+        let aims = self.main.iter().chain(&self.apart);
+        aims.map(Aim::greatest).fold(0.0, f64::max)
+    }
 }
 
 /// A piece of what a walk from a sensor finds.

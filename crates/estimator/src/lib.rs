@@ -30,12 +30,14 @@ mod receiver;
 mod results;
 mod run;
 mod sight;
+mod state;
 mod statistics;
 mod trace;
 
-pub use picture::{Picture, picture};
+pub use picture::{Film, Picture, expose};
 pub use results::{
     Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Results, Shares, Stop,
 };
-pub use run::run;
+pub use run::{resume, run};
+pub use state::{NoShard, Shard, State, StateError};
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};

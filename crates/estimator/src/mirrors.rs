@@ -424,6 +424,10 @@ impl Mirrors {
             if view.facets.last() == Some(&index) {
                 continue;
             }
+            // Most mirrors do not stand on one side of both.
+            if target.finite && facet.above(beam.apex) * facet.above(target.at) <= 0.0 {
+                continue;
+            }
             let span = if target.finite {
                 facet.image(target.at) - beam.apex
             } else {

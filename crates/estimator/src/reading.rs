@@ -181,6 +181,21 @@ impl<'a> Readings<'a> {
             .fold(0.0, f64::max)
     }
 
+    /// Says if no walk has brought light to any of the free sensors.
+    #[must_use]
+    pub(crate) fn dark(&self, tally: &Tally) -> Option<String> {
+        let mut free = (0..self.receivers.len())
+            .filter(|&sensor| !self.receivers[sensor].enclosed)
+            .map(|sensor| self.s0(tally, sensor, 0.0).mean)
+            .peekable();
+        free.peek()?;
+        free.all(|s0| s0 <= 0.0).then(|| {
+            "no light has reached any sensor point: is a lamp inside a closed solid or behind a wall, or does it face away? \
+             Surfaces emit on the side of their normals only"
+                .into()
+        })
+    }
+
     /// Every reading, by sensor group.
     #[must_use]
     pub(crate) fn groups(&self, tally: &Tally) -> Vec<Group> {

@@ -35,16 +35,6 @@ pub struct Results {
     pub warnings: Vec<String>,
 }
 
-impl Results {
-    /// Whether there are free sensor points and no walk has brought light to any of them.
-    #[must_use]
-    pub fn are_dark(&self) -> bool {
-        let readings = || self.groups.iter().flat_map(|group| &group.readings);
-        let mut free = readings().filter(|reading| !reading.enclosed).peekable();
-        free.peek().is_some() && free.all(|reading| reading.stokes[0] <= 0.0)
-    }
-}
-
 /// What each way of finding light has brought, as shares of S0 summed over all free sensor points.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Shares {

@@ -6,7 +6,7 @@ use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::exact;
-use crate::glints::Aim;
+use crate::gather::Aims;
 use crate::ledger::Ledger;
 use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
@@ -14,6 +14,7 @@ use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
 use crate::results::{Answer, Progress, Results, Stop};
 use crate::sight::Sight;
+use crate::state::{Shard, State, StateError};
 use crate::statistics::REPLICAS;
 use crate::trace::LONGEST;
 use malus_optics::Representation;
@@ -41,11 +42,33 @@ pub fn run(
     settings: &Settings,
     watch: &mut dyn FnMut(&Progress) -> Answer,
 ) -> Results {
+    let mut state = State::new(Shard::WHOLE);
+    resume(scene, settings, &mut state, &mut |progress, _| {
+        watch(progress)
+    })
+    .expect("a state without walks fits every scene")
+}
+
+/// The same, from a state that an earlier run of the same scene and settings has left, or that parts of it have been
+/// joined to; the stopping rules alone may differ.
+///
+/// `watch` is shown the state between steps, and may keep it: a run that goes on from there has the bytes of one that was
+/// never set aside. Afterwards `state` holds all that was summed. Of a shard, the results are those of its own
+/// replicas.
+///
+/// # Errors
+/// The state does not fit the scene, or has come further than `settings.samples`.
+pub fn resume(
+    scene: &Scene,
+    settings: &Settings,
+    state: &mut State,
+    watch: &mut dyn FnMut(&Progress, &State) -> Answer,
+) -> Result<Results, StateError> {
     let representation = representation_of(scene, settings);
     match representation {
-        Representation::Intensity => run_with::<1>(scene, settings, representation, watch),
-        Representation::Linear => run_with::<3>(scene, settings, representation, watch),
-        Representation::Full => run_with::<4>(scene, settings, representation, watch),
+        Representation::Intensity => run_with::<1>(scene, settings, representation, state, watch),
+        Representation::Linear => run_with::<3>(scene, settings, representation, state, watch),
+        Representation::Full => run_with::<4>(scene, settings, representation, state, watch),
     }
 }
 
@@ -61,8 +84,13 @@ fn run_with<const N: usize>(
     scene: &Scene,
     settings: &Settings,
     representation: Representation,
-    watch: &mut dyn FnMut(&Progress) -> Answer,
-) -> Results {
+    state: &mut State,
+    watch: &mut dyn FnMut(&Progress, &State) -> Answer,
+) -> Result<Results, StateError> {
+    let limit = settings
+        .samples
+        .map(|samples| samples.div_ceil(u64::from(REPLICAS)).max(1));
+    state.check(limit)?;
     let channels = Channels::new(scene, settings, representation);
     let emitters = Emitters::new(scene);
     let mut receivers = Receiver::all(scene);
@@ -89,9 +117,10 @@ fn run_with<const N: usize>(
         Some(_) => vec![[0.0; N]; receivers.len()],
         None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref()),
     };
+    let aims = Aims::all(&passes, &receivers);
     let allocation = if techniques.gather && techniques.local > 0.0 {
         let exact = |sensor: usize| exact[sensor][0];
-        Allocation::piloted(&passes, &receivers, exact, settings.seed)
+        Allocation::piloted(&passes, &receivers, &aims, exact, settings.seed)
     } else {
         Allocation::even(receivers.len())
     };
@@ -100,12 +129,13 @@ fn run_with<const N: usize>(
         channels,
         receivers: &receivers,
         allocation: &allocation,
+        aims: &aims,
         cells: cells.as_ref(),
         seed: settings.seed,
     };
     let unmet = match &cells {
         Some(cells) => vec![direct::unmet(&passes.main, cells); receivers.len()],
-        None if techniques.gather => unmet(&passes, &emitters, &receivers),
+        None if techniques.gather => unmet(&passes, &emitters, &aims),
         None => vec![Unmet::default(); receivers.len()],
     };
     let shared = techniques.mirrored;
@@ -119,51 +149,51 @@ fn run_with<const N: usize>(
         shared,
     );
 
-    let mut tally = engine.tally();
-    let mut taken = 0;
-    let mut truncated = 0;
+    engine.fit(&mut state.walks)?;
+    let mut taken = state.walks.points();
     let mut reached = None;
-    let limit = settings
-        .samples
-        .map(|samples| samples.div_ceil(u64::from(REPLICAS)).max(1));
     let stop = loop {
+        // A run that goes on is judged where it was set aside, too: it may have been right before its end.
+        if taken > 0 {
+            let checkpoint = taken == next_checkpoint(taken - 1) || Some(taken) == limit;
+            if checkpoint {
+                reached = Some(readings.relative_error(&state.walks));
+            }
+            let progress = Progress {
+                samples: taken * u64::from(REPLICAS),
+                next_checkpoint: next_checkpoint(taken).min(limit.unwrap_or(u64::MAX))
+                    * u64::from(REPLICAS),
+                samples_limit: limit.map(|n| n * u64::from(REPLICAS)),
+                checkpoint,
+                relative_error: reached,
+                relative_error_goal: settings.relative_error,
+            };
+            let answer = watch(&progress, state);
+            if answer == Answer::Interrupt {
+                break Stop::Interrupted;
+            }
+            if checkpoint {
+                if let (Some(error), Some(goal)) = (reached, settings.relative_error)
+                    && error <= goal
+                {
+                    break Stop::RelativeError;
+                }
+                if Some(taken) == limit {
+                    break Stop::Samples;
+                }
+                if answer == Answer::Enough {
+                    break Stop::Time;
+                }
+            }
+        }
         let checkpoint = next_checkpoint(taken).min(limit.unwrap_or(u64::MAX));
-        let until = checkpoint.min(taken + engine.step());
-        truncated += engine.advance(&mut tally, until).truncated;
-        taken = until;
-        if taken == checkpoint {
-            reached = Some(readings.relative_error(&tally));
-        }
-        let progress = Progress {
-            samples: taken * u64::from(REPLICAS),
-            next_checkpoint: next_checkpoint(taken).min(limit.unwrap_or(u64::MAX))
-                * u64::from(REPLICAS),
-            samples_limit: limit.map(|n| n * u64::from(REPLICAS)),
-            checkpoint: taken == checkpoint,
-            relative_error: reached,
-            relative_error_goal: settings.relative_error,
-        };
-        let answer = watch(&progress);
-        if answer == Answer::Interrupt {
-            break Stop::Interrupted;
-        }
-        if taken == checkpoint {
-            if let (Some(error), Some(goal)) = (reached, settings.relative_error)
-                && error <= goal
-            {
-                break Stop::RelativeError;
-            }
-            if Some(taken) == limit {
-                break Stop::Samples;
-            }
-            if answer == Answer::Enough {
-                break Stop::Time;
-            }
-        }
+        taken = checkpoint.min(taken + engine.step());
+        engine.advance(&mut state.walks, taken);
     };
 
-    let ledger = Ledger::keep(&engine, settings.estimator, taken);
-    let relative_error_max = readings.relative_error(&tally);
+    let ledger = Ledger::keep(&engine, settings.estimator, taken, &mut state.books)?;
+    let tally = &state.walks;
+    let relative_error_max = readings.relative_error(tally);
     // The scalar model beside the diffuse one has mirrors of its own.
     let mut warnings: Vec<String> = engine
         .passes
@@ -176,55 +206,52 @@ fn run_with<const N: usize>(
     } else {
         warnings.extend(exact::singular(&engine.passes.main, &receivers));
     }
+    warnings.extend(readings.dark(&tally));
     warnings.extend(ledger.leak(scene));
+    let truncated: u64 = tally.replicas().map(|replica| replica.truncated).sum();
     if truncated > 0 {
         warnings.push(format!(
             "{truncated} walks were cut off after {LONGEST} reflections: what they still carried is missing"
         ));
     }
-    Results {
-        groups: readings.groups(&tally),
+    Ok(Results {
+        groups: readings.groups(tally),
         samples: taken * u64::from(REPLICAS),
         dof: REPLICAS - 1,
         representation,
         representation_reason: representation_reason(scene, settings),
         estimator: settings.estimator,
         estimator_reason: estimator_reason.into(),
-        shares: readings.shares(&tally),
+        shares: readings.shares(tally),
         complete: stop != Stop::Interrupted,
         stop,
         relative_error_max,
         energy: ledger.energy(engine.passes.main.materials),
         warnings,
-    }
+    })
 }
 
 /// What may lie for each sensor in mirrors that nothing looks into, and has not been met by chance yet.
-fn unmet(passes: &Passes, emitters: &Emitters, receivers: &[Receiver]) -> Vec<Unmet> {
+fn unmet(passes: &Passes, emitters: &Emitters, aims: &[Aims]) -> Vec<Unmet> {
     let all = emitters.unmet();
-    // The most that there can be of it is what such mirrors can send on; the least share of it is met by walks that are
-    // aimed at them.
-    let of_one = |medium: &Medium, receiver: &Receiver| {
-        if !passes.techniques.mirrored {
-            return (1.0, f64::from(u8::from(has_mirrors(medium.materials))));
+    let share = |medium: &Medium| {
+        if passes.techniques.mirrored {
+            medium.mirrors.unseen()
+        } else {
+            f64::from(u8::from(has_mirrors(medium.materials)))
         }
-        let aim = Aim::new(medium.glints, medium.surfaces, receiver);
-        let one = aim.map_or(1.0, |aim| aim.greatest());
-        (one, medium.mirrors.unseen())
     };
-    receivers
-        .iter()
-        .map(|receiver| {
-            let shares = passes.media().map(|medium| of_one(medium, receiver));
-            let (one, most) = shares.fold((0.0, 0.0), |(a, b): (f64, f64), (c, d)| {
-                (a.max(if d > 0.0 { c } else { 0.0 }), b.max(d))
-            });
-            Unmet {
-                one: all.one * one,
-                most: all.most * most,
-            }
-        })
-        .collect()
+    // The most that there can be of it is what such mirrors can send on.
+    let most = passes.media().map(share).fold(0.0, f64::max);
+    let one = |aims: &Aims| match passes.techniques.mirrored {
+        true => aims.greatest(),
+        false => most,
+    };
+    let unmet = |aims: &Aims| Unmet {
+        one: all.one * one(aims),
+        most: all.most * most,
+    };
+    aims.iter().map(unmet).collect()
 }
 
 fn representation_reason(scene: &Scene, settings: &Settings) -> String {
