@@ -603,11 +603,11 @@ fn two_patches_send_each_other_the_same() {
             {shapes}
             [[sensor]]
             name = 'patch'
-            grid = {{ origin = {origin}, u = {u}, v = {v}, counts = [4, 4] }}
+            grid = {{ origin = {origin}, u = {u}, v = {v}, counts = [3, 3] }}
             normal = {normal}
             [run]
             compare = ['scalar']
-            samples = 16384"
+            samples = 2048"
         )));
         let group = &results.groups[0];
         (group.mean, group.mean_standard_error, group.scalar.unwrap())
@@ -616,7 +616,7 @@ fn two_patches_send_each_other_the_same() {
     let z = (one.0 - other.0) / one.1.hypot(other.1);
     assert!(z.abs() < 4.5, "{one:?} {other:?}: z = {z:.2}");
     assert!(
-        one.1 < 1e-2 * one.0 && other.1 < 1e-2 * other.0,
+        one.1 < 2e-2 * one.0 && other.1 < 2e-2 * other.0,
         "{one:?} {other:?}"
     );
     let errors = [one.2, other.2].map(|it| it.difference_standard_error);

@@ -431,7 +431,9 @@ fn white_materials_are_named() {
         let sheet = "[[shape]]\nkind = \"rectangle\"\norigin = [1, 1, 1]\nu = [1, 0, 0]\nv = [0, 1, 0]\nmaterial = \"sheet\"\n\
             [material.sheet]\nrho = 0.5\n";
         let warnings = Room::new(&format!("{text}{sheet}")).load().warnings;
-        warnings.iter().any(|it| it.contains("keep no light (rho = 1): plaster"))
+        warnings
+            .iter()
+            .any(|it| it.contains("keep no light (rho = 1): plaster"))
     };
     assert!(told("rho = 1"));
     assert!(told("rho = 1\nkind = \"coated\""));
