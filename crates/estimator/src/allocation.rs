@@ -25,7 +25,7 @@ const TRIED: u32 = PARTS / 8;
 /// Rounds of the pilot, and the walks from the emitters and from each sensor in one round.
 const ROUNDS: u32 = 16;
 const LAUNCHED: u64 = 8;
-const GATHERED: u64 = 2;
+const GATHERED: u64 = 1;
 
 /// Cost of a ray, of joining a vertex to a sensor, and of looking into mirrors from a vertex, relative to each other.
 const RAY: f64 = 1.0;
@@ -98,6 +98,11 @@ impl Allocation {
             let square = need.mean.max(1e-3 * mean).powi(2);
             need.launched /= square;
             need.gathered /= square;
+        }
+        // So few walks seldom meet what is rare and bright, and then at few sensors: each takes over half of the mean.
+        let gathered = needs.iter().map(|n| n.gathered).sum::<f64>() / needs.len().max(1) as f64;
+        for need in &mut needs {
+            need.gathered = 0.5 * (need.gathered + gathered);
         }
         let walks = f64::from(ROUNDS) * LAUNCHED as f64;
         let cost_launched = rounds.iter().map(|r| r.cost_launched).sum::<f64>() / walks;

@@ -127,7 +127,6 @@ impl<'a> Readings<'a> {
 
     /// Variance at each sensor that the spread of its own replicas does not tell.
     fn hidden(&self, tally: &Tally) -> Vec<f64> {
-        let free = |&sensor: &usize| !self.receivers[sensor].enclosed;
         let walks: Vec<f64> = (0..self.receivers.len())
             .map(|sensor| self.walks(tally, sensor))
             .collect();
@@ -140,13 +139,12 @@ impl<'a> Readings<'a> {
             tally.estimate(read).standard_error.powi(2)
         };
         let met: Vec<f64> = (0..walks.len()).map(met).collect();
-        let (mut all, mut variance) = (0.0, 0.0);
-        for sensor in (0..walks.len()).filter(free) {
-            all += walks[sensor];
-            variance += met[sensor] * walks[sensor] * walks[sensor];
-        }
-        // Of one walk, on average over all of them.
-        let of_one = if all > 0.0 { variance / all } else { 0.0 };
+        let free: Vec<usize> = (0..walks.len())
+            .filter(|&sensor| !self.receivers[sensor].enclosed)
+            .collect();
+        let all: f64 = free.iter().map(|&s| walks[s]).sum();
+        let of_one: f64 = free.iter().map(|&s| met[s] * walks[s]).sum();
+        let of_one = of_one / free.len().max(1) as f64;
         (0..walks.len())
             .map(|sensor| {
                 let shared = of_one / walks[sensor].max(1.0);
