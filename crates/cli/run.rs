@@ -78,6 +78,7 @@ fn compute_whole(command: &args::Run, job: &Job, part: &mut Part) -> anyhow::Res
     let mut complete = results.complete;
     for index in pictured(part, job.scene) {
         if job.interrupt.asked() {
+            complete = false;
             break;
         }
         job.shoot(part, index)?;
@@ -89,6 +90,7 @@ fn compute_whole(command: &args::Run, job: &Job, part: &mut Part) -> anyhow::Res
     let circumstances = Circumstances {
         seconds: part.head.seconds,
         threads: part.head.threads,
+        complete,
         repeat: command.repeating(results.samples),
         warnings: [job.scene.warnings.as_slice(), &results.warnings].concat(),
     };
