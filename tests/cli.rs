@@ -5,6 +5,7 @@ mod bad_input;
 mod printed;
 mod results;
 mod stopping;
+mod tradeoff;
 
 pub use bad_input::{assert_told, refusal};
 use std::path::{Path, PathBuf};

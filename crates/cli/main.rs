@@ -27,6 +27,7 @@ mod summary;
 mod svg;
 mod table;
 mod tick;
+mod tradeoff;
 
 use args::{Arguments, Command};
 use clap::Parser;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
     let end = match Arguments::parse().command {
         Command::Run(command) => run::run(&command),
         Command::Analyse(command) => analyse::analyse(&command).map(|()| run::End::Complete),
+        Command::Tradeoff(command) => tradeoff::tradeoff(&command),
         Command::Check(command) => check::check(&command).map(|()| run::End::Complete),
     };
     match end {

@@ -11,6 +11,7 @@ use crate::{overview, picture, plan, rows, stop, summary};
 use anyhow::{Context, anyhow};
 use malus_estimator::{Answer, Picture, Results};
 use malus_scene::{Camera, Scene, Settings};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -29,17 +30,14 @@ pub enum End {
 /// # Errors
 /// Bad arguments, a bad scene, or a run that failed.
 pub fn run(command: &args::Run) -> Result<End, Failure> {
-    let threads = threads(command)?;
+    let threads = threads(command.threads.as_deref())?;
     let scene = load(command)?;
     let mut settings = scene.settings.clone();
     stop::narrow(&mut settings, &command.overrides());
-    let directory = Directory::prepare(&directory(command)).map_err(Failure::run)?;
-    warn(&scene.warnings);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .with_context(|| format!("cannot start {threads} threads"))
+    let directory = Directory::prepare(&directory(command.output.as_deref(), &command.scene))
         .map_err(Failure::run)?;
+    warn(&scene.warnings);
+    let pool = pool(threads)?;
     let interrupt = Interrupt::listen().map_err(Failure::run)?;
     let (results, seconds) = pool.install(|| compute(command, &scene, &settings, &interrupt));
     warn(&results.warnings);
@@ -98,8 +96,11 @@ fn load(command: &args::Run) -> Result<Scene, Failure> {
 const MOST_THREADS: usize = 1024;
 
 /// Number of threads asked for, or as many as there are cores.
-fn threads(command: &args::Run) -> Result<usize, Failure> {
-    let Some(text) = &command.threads else {
+///
+/// # Errors
+/// What was asked for is no number of threads.
+pub fn threads(asked: Option<&str>) -> Result<usize, Failure> {
+    let Some(text) = asked else {
         return Ok(std::thread::available_parallelism().map_or(1, usize::from));
     };
     text.parse()
@@ -112,12 +113,24 @@ fn threads(command: &args::Run) -> Result<usize, Failure> {
         })
 }
 
-/// Where the results go.
-fn directory(command: &args::Run) -> PathBuf {
-    command.output.clone().unwrap_or_else(|| {
-        let stem = command.scene.file_stem().unwrap_or("scene".as_ref());
-        Path::new("results").join(stem)
-    })
+/// So many threads, ready to compute.
+///
+/// # Errors
+/// The system gives no threads.
+pub fn pool(threads: usize) -> Result<ThreadPool, Failure> {
+    ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .with_context(|| format!("cannot start {threads} threads"))
+        .map_err(Failure::run)
+}
+
+/// Where the results go: what was asked for, or a directory of the scene file's name.
+pub fn directory(asked: Option<&Path>, scene: &Path) -> PathBuf {
+    match asked {
+        Some(path) => path.to_owned(),
+        None => Path::new("results").join(scene.file_stem().unwrap_or("scene".as_ref())),
+    }
 }
 
 /// The results, and the seconds they took.

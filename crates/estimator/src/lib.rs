@@ -30,6 +30,7 @@ mod run;
 mod statistics;
 mod trace;
 
+pub use choose::unseen;
 pub use picture::{Picture, picture};
 pub use results::{
     Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Results, Shares, Stop,
