@@ -62,6 +62,14 @@ pub fn tradeoff(command: &args::Tradeoff) -> Result<End, Failure> {
     reporter.finish();
     let reference = reference?;
     let curves = series.curves(&reference);
+    let told = curves.iter().any(|curve| curve.points().next().is_some());
+    if !told && !interrupt.asked() {
+        return Err(Failure::run(anyhow!(
+            "no error is five times the reference's standard error of {}, so none can be told after {:.1} s: give more --budget",
+            report::percent(reference.standard_error()),
+            budget.elapsed()
+        )));
+    }
     let report = report::Report {
         file: &command.scene,
         scene: &scene,

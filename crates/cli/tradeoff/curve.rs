@@ -17,8 +17,10 @@ const ROUND: u64 = malus_estimator::REPLICAS as u64;
 pub struct Curve {
     /// The setting.
     pub setting: Setting,
-    /// Its outcomes.
-    pub points: Vec<Outcome>,
+    /// Its outcomes, of which the first at least one, and beyond those that are shown one that is not.
+    pub outcomes: Vec<Outcome>,
+    /// The smallest error that the reference can tell: what is below is known to be below, and no more.
+    pub limit: f64,
 }
 
 /// Where a curve comes down to an error.
@@ -33,11 +35,17 @@ pub struct Reach {
 }
 
 impl Curve {
+    /// The outcomes that the reference can tell: those that are shown.
+    pub fn points(&self) -> impl DoubleEndedIterator<Item = &Outcome> {
+        self.outcomes
+            .iter()
+            .filter(|outcome| outcome.rms_error >= self.limit)
+    }
+
     /// Power of the time that the error goes with at the end of the curve, −½ where it is chance alone; from two points on.
     pub fn slope(&self) -> Option<f64> {
         let logarithms: Vec<[f64; 2]> = self
-            .points
-            .iter()
+            .points()
             .filter(|point| point.rms_error > 0.0)
             .map(|point| [point.seconds.ln(), point.rms_error.ln()])
             .collect();
@@ -51,36 +59,31 @@ impl Curve {
 
     /// The error that more samples do not take away; told by the last two points, or by one where there is no other.
     pub fn floor(&self) -> Option<f64> {
-        let (last, before) = self.points.split_last()?;
-        let told = before.last().is_none_or(|point| point.bias.is_some());
+        let mut backwards = self.points().rev();
+        let last = backwards.next()?;
+        let told = backwards.next().is_none_or(|point| point.bias.is_some());
         last.bias.filter(|_| told)
     }
 
-    /// Where the curve comes down to an error, between its points by straight lines of the logarithms and beyond them
-    /// by the square root of the samples; `None` where it ends above, or is not known so far.
+    /// Where the curve comes down to an error, between outcomes by straight lines of the logarithms and beyond what can be
+    /// told by the square root of the samples; `None` where it ends above, or is not known so far.
     pub fn reach(&self, error: f64) -> Option<Reach> {
-        let above = self
-            .points
-            .iter()
-            .rposition(|point| point.rms_error > error);
+        if error < self.limit {
+            return self.foretold(error);
+        }
+        let above = self.outcomes.iter().rposition(|it| it.rms_error > error);
         let Some(above) = above else {
-            let first = self.points.first()?;
+            let first = self.outcomes.first()?;
             return Some(Reach {
                 seconds: first.seconds,
                 samples: first.samples,
                 is_foretold: false,
             });
         };
-        let from = self.points[above];
-        let Some(to) = self.points.get(above + 1) else {
-            let factor = (from.rms_error / error) * (from.rms_error / error);
-            let ends_above = self.floor().is_some_and(|floor| floor > 0.5 * error);
-            return (!ends_above && factor <= BEYOND).then(|| Reach {
-                seconds: from.seconds * factor,
-                samples: rounds(from.samples as f64 * factor),
-                is_foretold: true,
-            });
+        let Some(to) = self.outcomes.get(above + 1) else {
+            return self.foretold(error);
         };
+        let from = self.outcomes[above];
         let share = if to.rms_error > 0.0 {
             (from.rms_error / error).ln() / (from.rms_error / to.rms_error).ln()
         } else {
@@ -91,6 +94,18 @@ impl Curve {
             seconds: between(from.seconds, to.seconds),
             samples: rounds(between(from.samples as f64, to.samples as f64)),
             is_foretold: false,
+        })
+    }
+
+    /// The same beyond the last point that the reference can tell, or beyond the first outcome where it can tell none.
+    fn foretold(&self, error: f64) -> Option<Reach> {
+        let last = self.points().next_back().or(self.outcomes.first())?;
+        let factor = (last.rms_error / error) * (last.rms_error / error);
+        let ends_above = self.floor().is_some_and(|floor| floor > 0.5 * error);
+        (!ends_above && factor <= BEYOND).then(|| Reach {
+            seconds: last.seconds * factor.max(1.0),
+            samples: rounds(last.samples as f64 * factor.max(1.0)),
+            is_foretold: true,
         })
     }
 }
@@ -104,7 +119,7 @@ fn rounds(samples: f64) -> u64 {
 pub fn frontier(curves: &[Curve]) -> Vec<[f64; 2]> {
     let mut points: Vec<[f64; 2]> = curves
         .iter()
-        .flat_map(|curve| &curve.points)
+        .flat_map(Curve::points)
         .map(|point| [point.seconds, point.rms_error])
         .collect();
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
@@ -140,7 +155,8 @@ pub mod tests {
                 representation: Representation::Linear,
                 threads: 2,
             },
-            points: points.iter().enumerate().map(outcome).collect(),
+            outcomes: points.iter().enumerate().map(outcome).collect(),
+            limit: 0.0,
         }
     }
 
@@ -170,14 +186,28 @@ pub mod tests {
     }
 
     #[test]
+    fn below_the_limit_of_the_reference_an_error_is_known_to_be_below_and_no_more() {
+        let mut curve = curve(&[[1.0, 0.08], [4.0, 0.02]]);
+        curve.limit = 0.04;
+        assert_eq!(curve.points().count(), 1);
+        let reach = curve.reach(0.04).unwrap();
+        assert!((reach.seconds - 2.0).abs() < 1e-12 && !reach.is_foretold);
+        // Foretold from the last point that can be told, not from the one that cannot.
+        let reach = curve.reach(0.02).unwrap();
+        assert!((reach.seconds - 16.0).abs() < 1e-12 && reach.is_foretold);
+        curve.limit = 0.1;
+        assert!((curve.reach(0.1).unwrap().seconds - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
     fn a_curve_with_a_floor_does_not_come_below_it() {
         let mut blind = curve(&[[1.0, 0.06], [4.0, 0.055]]);
-        for point in &mut blind.points {
+        for point in &mut blind.outcomes {
             point.bias = Some(0.05);
         }
         assert_eq!(blind.floor(), Some(0.05));
         assert_eq!(blind.reach(0.03), None);
-        blind.points[0].bias = None;
+        blind.outcomes[0].bias = None;
         assert_eq!(blind.floor(), None);
     }
 

@@ -5,6 +5,7 @@ use crate::scale::Scale;
 use crate::svg::{Anchor, SMALL, line, path_data, text};
 use crate::tradeoff::curve::{Curve, frontier};
 use crate::tradeoff::report::{Report, percent};
+use crate::tradeoff::trial::Outcome;
 use std::fmt::Write;
 
 /// The area of the curves: left, top, right, bottom, in pixels.
@@ -27,22 +28,9 @@ struct Axes {
 
 /// The diagram; `None` where there is no point to show.
 pub fn svg(report: &Report) -> Option<String> {
-    let curves: Vec<Curve> = report
-        .curves
-        .iter()
-        .map(|curve| Curve {
-            setting: curve.setting,
-            points: curve
-                .points
-                .iter()
-                .copied()
-                .filter(|point| (f64::MIN_POSITIVE..=WORST).contains(&point.rms_error))
-                .collect(),
-        })
-        .filter(|curve| !curve.points.is_empty())
-        .collect();
+    let curves = report.curves;
     let limit = report.reference.limit();
-    let axes = Axes::around(&curves, limit)?;
+    let axes = Axes::around(curves, limit)?;
     let [width, height] = PAGE;
     let mut drawing = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
@@ -59,19 +47,26 @@ pub fn svg(report: &Report) -> Option<String> {
     drawing += &axes.untold(limit);
     drawing += &axes.grid();
     drawing += &axes.guides();
-    drawing += &axes.frontier(&curves);
+    drawing += &axes.frontier(curves);
     for (index, curve) in curves.iter().enumerate() {
         drawing += &axes.curve(curve, &Style::of(index, curves.len()));
     }
     drawing += &axes.frame();
-    drawing += &legend(&curves);
+    drawing += &legend(curves);
     Some(drawing + "</svg>\n")
+}
+
+/// The points of a curve that are worth a place, and have one on a logarithmic axis.
+fn shown(curve: &Curve) -> impl Iterator<Item = &Outcome> {
+    curve
+        .points()
+        .filter(|point| (f64::MIN_POSITIVE..=WORST).contains(&point.rms_error))
 }
 
 impl Axes {
     /// Axes that hold all points, with some room; time spans at least a decade.
     fn around(curves: &[Curve], limit: f64) -> Option<Self> {
-        let points = || curves.iter().flat_map(|curve| &curve.points);
+        let points = || curves.iter().flat_map(shown);
         let ends = |values: &mut dyn Iterator<Item = f64>| {
             values.fold([f64::INFINITY, 0.0], |[low, high], value| {
                 [low.min(value), f64::max(high, value)]
@@ -190,15 +185,14 @@ impl Axes {
     fn frontier(&self, curves: &[Curve]) -> String {
         let points: Vec<[f64; 2]> = frontier(curves)
             .into_iter()
+            .filter(|[_, error]| *error <= WORST)
             .map(|at| self.place(at))
             .collect();
         band(&path_data(&points))
     }
 
     fn curve(&self, curve: &Curve, style: &Style) -> String {
-        let places: Vec<[f64; 2]> = curve
-            .points
-            .iter()
+        let places: Vec<[f64; 2]> = shown(curve)
             .map(|point| self.place([point.seconds, point.rms_error]))
             .collect();
         let mut drawing = style.stroke(&path_data(&places));
@@ -323,6 +317,9 @@ fn ending(curve: &Curve) -> String {
     let floor = curve
         .floor()
         .map(|floor| format!("ends at {}", percent(floor)));
+    if curve.points().next().is_none() {
+        return "finer than the reference can tell".into();
+    }
     let parts: Vec<String> = slope.into_iter().chain(floor).collect();
     parts.join(", ")
 }

@@ -42,7 +42,7 @@ impl Report<'_> {
         table.write_record(HEADER.split(','))?;
         for curve in self.curves {
             let setting = curve.setting;
-            for point in &curve.points {
+            for point in curve.points() {
                 let mut row = vec![
                     label::estimator(setting.estimator).to_owned(),
                     label::representation(setting.representation).to_owned(),
@@ -83,17 +83,17 @@ impl Report<'_> {
 
     /// The smallest error of any curve.
     fn smallest(&self) -> Option<f64> {
-        let points = self.curves.iter().flat_map(|curve| &curve.points);
+        let points = self.curves.iter().flat_map(Curve::points);
         points.map(|point| point.rms_error).reduce(f64::min)
     }
 
     /// What `tradeoff` prints, with results in `directory`.
     pub fn text(&self, directory: &Path) -> String {
-        let smallest = match self.smallest() {
-            Some(error) => format!("smallest error shown {}", percent(error)),
-            None => "no error is five times as large, so none can be told: give more --budget"
-                .to_owned(),
-        };
+        let smallest = self
+            .smallest()
+            .map_or("nothing to show yet".into(), |error| {
+                format!("smallest error shown {}", percent(error))
+            });
         let mut text = format!("{}; {smallest}\n\n", self.reference());
         text += &self.settings().text("");
         text += "\nCheapest setting to a relative error (root mean square over sensor points and runs)\n";
@@ -133,13 +133,16 @@ impl Report<'_> {
         columns.push(("".to_owned(), Edge::Left));
         let mut table = Table::new(columns);
         for curve in self.curves {
-            let Some(last) = curve.points.last() else {
-                continue;
+            // What cannot be told is at least known to be small.
+            let (last, about) = match (curve.points().next_back(), curve.outcomes.first()) {
+                (Some(last), _) => (last, percent(last.rms_error)),
+                (None, Some(first)) => (first, format!("< {}", percent(curve.limit))),
+                (None, None) => continue,
             };
             let mut row = setting_cells(curve);
             row.extend([
                 last.runs.to_string(),
-                percent(last.rms_error),
+                about,
                 percent(last.se_mean),
                 significant(last.seconds, 2),
                 curve

@@ -11,7 +11,6 @@ use crate::tradeoff::reference::Reference;
 use crate::tradeoff::setting::Setting;
 use crate::tradeoff::trial::Trial;
 use malus_estimator::{Answer, REPLICAS, Results, unseen};
-use malus_optics::Representation;
 use malus_scene::{Estimator, Scene, Settings};
 use rayon::ThreadPool;
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,6 +27,10 @@ const ENOUGH: f64 = 1e-4;
 
 /// Trials of fewer runs are not shown where others have more: they may have been lucky.
 const LEAST_RUNS: usize = 3;
+
+/// Share of the limit of the reference down to which trials count as told while they are being made: what chance makes of
+/// it is seen afterwards.
+const BARELY: f64 = 0.7;
 
 /// Share of the budget that is kept for writing.
 const WRITING: f64 = 0.01;
@@ -134,27 +137,20 @@ impl<'a> Series<'a> {
         reference: Option<&Reference>,
     ) -> bool {
         let trials = &self.ladders[index].1;
-        let step = STEP as f64;
-        let (seconds, before) = match (trials.get(rung), rung.checked_sub(1)) {
-            (Some(trial), _) => (trial.median_seconds(), Some((trial, 1.0))),
-            (None, Some(below)) => match trials.get(below) {
-                Some(trial) => (step * trial.median_seconds(), Some((trial, step.sqrt()))),
-                None => return false,
-            },
-            (None, None) => (0.0, None),
+        let below = rung.checked_sub(1).and_then(|below| trials.get(below));
+        let seconds = match (trials.get(rung), below) {
+            (Some(trial), _) => trial.median_seconds(),
+            (None, Some(below)) => STEP as f64 * below.median_seconds(),
+            (None, None) if rung == 0 => 0.0,
+            (None, None) => return false,
         };
-        let told = before
+        // One step beyond what can be told, so that where the limit is crossed can be told.
+        let told = below
             .zip(reference)
-            .is_none_or(|((trial, factor), reference)| {
-                // A little below the limit: what chance makes of it is seen afterwards.
-                trial.stated(reference) / factor > 0.7 * reference.limit()
-            });
+            .is_none_or(|(trial, reference)| trial.stated(reference) > BARELY * reference.limit());
         let left = self.budget.left();
-        !self.interrupt.asked()
-            && left > 0.0
-            && seconds < left
-            && (seconds <= longest || rung == 0)
-            && told
+        let fits = seconds < left && (seconds <= longest || rung == 0);
+        !self.interrupt.asked() && left > 0.0 && fits && told
     }
 
     /// Runs a trial once more; whether it came to its end.
@@ -245,7 +241,7 @@ impl<'a> Series<'a> {
         }
     }
 
-    /// The curves of what the reference can tell, in the order of the settings.
+    /// The curves, in the order of the settings.
     pub fn curves(&self, reference: &Reference) -> Vec<Curve> {
         let trials = || self.ladders.iter().flat_map(|(_, trials)| trials);
         let most = trials().map(Trial::runs).max().unwrap_or(0);
@@ -253,14 +249,14 @@ impl<'a> Series<'a> {
             .iter()
             .map(|(setting, trials)| Curve {
                 setting: *setting,
-                points: trials
+                outcomes: trials
                     .iter()
                     .filter(|trial| trial.runs() >= LEAST_RUNS.min(most))
                     .filter_map(|trial| trial.outcome(reference))
-                    .filter(|outcome| outcome.rms_error >= reference.limit())
                     .collect(),
+                limit: reference.limit(),
             })
-            .filter(|curve| !curve.points.is_empty())
+            .filter(|curve| !curve.outcomes.is_empty())
             .collect()
     }
 }

@@ -96,7 +96,15 @@ impl<'a> Readings<'a> {
                 let (g, l) = (p(0), p(1));
                 let e = self.exact[sensor][0];
                 let s0 = g.mean + l.mean + e;
-                eprintln!("DBG sensor {sensor} q {:.3} exact {:.3} gather {:.4} +- {:.5} local {:.4} +- {:.5}", 1.0 / self.allocation.launched(sensor), e/s0, g.mean/s0, g.standard_error/s0, l.mean/s0, l.standard_error/s0);
+                eprintln!(
+                    "DBG sensor {sensor} q {:.3} exact {:.3} gather {:.4} +- {:.5} local {:.4} +- {:.5}",
+                    1.0 / self.allocation.launched(sensor),
+                    e / s0,
+                    g.mean / s0,
+                    g.standard_error / s0,
+                    l.mean / s0,
+                    l.standard_error / s0
+                );
             }
             let part = |channel: usize, kind: usize| {
                 let read = |means: &Means| self.parts(means, sensor, channel)[kind];

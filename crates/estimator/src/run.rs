@@ -199,7 +199,9 @@ fn unmet(passes: &Passes, emitters: &Emitters) -> Unmet {
         }
     };
     let share = passes.media().map(share).fold(0.0, f64::max);
-    if std::env::var("DBG").is_ok() { eprintln!("DBG share {share} {:?}", emitters.unmet()); }
+    if std::env::var("DBG").is_ok() {
+        eprintln!("DBG share {share} {:?}", emitters.unmet());
+    }
     let unmet = emitters.unmet();
     if share > 0.0 {
         // The most that there can be of it is what such mirrors can send on.
