@@ -49,12 +49,13 @@ impl Reporter {
         self.tell(share, elapsed, || format!("{name}: {:.0} %", 100.0 * share));
     }
 
-    /// Shows what is going on within a job that takes `limit` seconds in all, after `elapsed` of them.
+    /// Shows what is going on within a job that takes `limit` seconds in all, after `elapsed` of them; the time first, as a
+    /// narrow terminal cuts off the end.
     pub fn show_stage(&mut self, stage: &str, elapsed: f64) {
         let left = self.limit.map_or(0.0, |limit| (limit - elapsed).max(0.0));
         let share = elapsed / (elapsed + left).max(1e-9);
         self.tell(share, elapsed, || {
-            format!("{stage}, at most {} left", duration(left))
+            format!("at most {} left, {stage}", duration(left))
         });
     }
 
