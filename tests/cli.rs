@@ -6,6 +6,7 @@ mod printed;
 mod results;
 mod shards;
 mod stopping;
+mod tradeoff;
 
 pub use bad_input::{assert_told, refusal};
 use std::path::{Path, PathBuf};

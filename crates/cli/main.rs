@@ -36,6 +36,7 @@ mod summary;
 mod svg;
 mod table;
 mod tick;
+mod tradeoff;
 
 use args::{Arguments, Command};
 use clap::Parser;
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
         Command::Run(command) => run::run(&command),
         Command::Merge(command) => merge::merge(&command).map(|()| run::End::Complete),
         Command::Analyse(command) => analyse::analyse(&command).map(|()| run::End::Complete),
+        Command::Tradeoff(command) => tradeoff::tradeoff(&command),
         Command::Check(command) => check::check(&command).map(|()| run::End::Complete),
     };
     match end {

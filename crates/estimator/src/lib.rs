@@ -34,6 +34,7 @@ mod state;
 mod statistics;
 mod trace;
 
+pub use choose::unseen;
 pub use picture::{Film, Picture, expose};
 pub use results::{
     Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Results, Shares, Stop,

@@ -206,7 +206,7 @@ fn run_with<const N: usize>(
     } else {
         warnings.extend(exact::singular(&engine.passes.main, &receivers));
     }
-    warnings.extend(readings.dark(&tally));
+    warnings.extend(readings.dark(tally));
     warnings.extend(ledger.leak(scene));
     let truncated: u64 = tally.replicas().map(|replica| replica.truncated).sum();
     if truncated > 0 {
