@@ -6,6 +6,8 @@ mod printed;
 mod results;
 mod shards;
 mod stopping;
+#[cfg(unix)]
+mod submitting;
 
 pub use bad_input::{assert_told, refusal};
 use std::path::{Path, PathBuf};

@@ -17,6 +17,13 @@ use std::path::Path;
 /// First line of a file; the number rises whenever what follows it is laid out anew.
 const FORM: &str = "malus state 1\n";
 
+/// The number in it.
+const FORM_NUMBER: u32 = 1;
+
+/// What is said of a file that is not as it was written.
+const DAMAGED: &str =
+    "is damaged: its checksum is not that of its content; remove it, and compute it again";
+
 /// Beginning of the first line of files of any form.
 const ANY_FORM: &str = "malus state ";
 
@@ -191,15 +198,22 @@ impl<W: Write> Write for Summed<'_, W> {
 /// The part that the bytes of a file hold.
 fn parsed(bytes: &[u8]) -> Result<Part> {
     if !bytes.starts_with(FORM.as_bytes()) {
-        let first = bytes.split(|&byte| byte == b'\n').next();
-        let first = String::from_utf8_lossy(first.unwrap_or_default());
-        if let Some(form) = first.strip_prefix(ANY_FORM) {
-            bail!("is of form {form:?}, which this version of malus does not read");
+        let form = bytes.strip_prefix(ANY_FORM.as_bytes());
+        let Some(form) = form else {
+            bail!("is no state of a run, as malus run writes it");
+        };
+        let form = form.split(|&byte| byte == b'\n').next().unwrap_or_default();
+        let form = str::from_utf8(form)
+            .ok()
+            .and_then(|form| form.parse::<u32>().ok());
+        match form {
+            Some(form) if form != FORM_NUMBER => {
+                bail!("is of form {form}, this version of malus reads form {FORM_NUMBER}")
+            }
+            _ => bail!(DAMAGED),
         }
-        bail!("is no state of a run, as malus run writes it");
     }
-    const DAMAGED: &str =
-        "is damaged: its checksum is not that of its content; remove it, and compute it again";
+    "is damaged: its checksum is not that of its content; remove it, and compute it again";
     let split = bytes.len().checked_sub(CHECKSUM).context(DAMAGED)?;
     let (content, checksum) = bytes.split_at(split);
     let mut sum = SipHasher13::new();
