@@ -1,7 +1,8 @@
 //! What a run works with: the walks it takes, and the sums they go to.
 
+use crate::allocation::Allocation;
 use crate::direct::{Cells, direct};
-use crate::gather::gather;
+use crate::gather::{Aims, Observer, gather};
 use crate::local::local;
 use crate::pass::{Channels, Effort, Passes};
 use crate::random::Stream;
@@ -23,6 +24,10 @@ pub(crate) struct Engine<'a, const N: usize> {
     pub channels: Channels,
     /// The sensors.
     pub receivers: &'a [Receiver],
+    /// Walks from each sensor, relative to those from the emitters.
+    pub allocation: &'a Allocation,
+    /// How each sensor aims at small mirrors.
+    pub aims: &'a [Aims<'a>],
     /// The cells in which `direct` counts, where that was asked for.
     pub cells: Option<&'a Cells>,
     /// Seed of all random numbers.
@@ -83,6 +88,7 @@ impl<const N: usize> Engine<'_, N> {
             &self.passes,
             &self.channels,
             self.receivers,
+            self.allocation,
             stream,
             replica.points..until,
             &mut replica.sums[self.length()..],
@@ -104,7 +110,7 @@ impl<const N: usize> Engine<'_, N> {
 
     fn advance_gather(&self, replica: &mut Replica, until: u64) -> Effort {
         let stream = Stream::new(self.seed, replica.id);
-        let range = replica.points..until;
+        let taken = replica.points;
         let efforts: Vec<Effort> = replica.sums[..self.length()]
             .par_chunks_mut(self.channels.count)
             .zip(self.receivers)
@@ -115,12 +121,17 @@ impl<const N: usize> Engine<'_, N> {
                     return Effort::default();
                 }
                 let stream = stream.branch(sensor as u64);
+                let walks = |launched| self.allocation.walks(sensor, launched);
                 gather::<N>(
                     &self.passes,
                     &self.channels,
-                    receiver,
+                    Observer {
+                        receiver,
+                        aims: &self.aims[sensor],
+                        launched: self.allocation.launched(sensor),
+                    },
                     stream,
-                    range.clone(),
+                    walks(taken)..walks(until),
                     sums,
                 )
             })

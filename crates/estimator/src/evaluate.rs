@@ -4,6 +4,7 @@
 //! analyser and gives it out by a Stokes vector of its own, so between chains light is one number.
 
 use crate::emitters::{Start, State};
+use crate::gather::Part;
 use crate::medium::Step;
 use crate::receiver::Receiver;
 use crate::trace::{Connection, Event, Path, Vertex};
@@ -211,8 +212,17 @@ impl<'r, const N: usize> Gathering<'r, N> {
         self.found
     }
 
+    /// Light met along a piece of a walk.
+    pub(crate) fn read(&mut self, path: &Path, part: Part, materials: &[Material]) {
+        match part {
+            Part::Start => self.look(path),
+            Part::Onward => self.follow(path, materials),
+        }
+    }
+
     /// Light that the sensor sees before the walk has left it.
-    pub(crate) fn look(&mut self, path: &Path) {
+    fn look(&mut self, path: &Path) {
+        self.chain = Chain::ToSensor(None);
         for connection in &path.connections {
             let chain = self.chain;
             self.connect(path, connection, chain, 1.0);
@@ -220,7 +230,7 @@ impl<'r, const N: usize> Gathering<'r, N> {
     }
 
     /// Light met along the next vertices of the walk.
-    pub(crate) fn follow(&mut self, path: &Path, materials: &[Material]) {
+    fn follow(&mut self, path: &Path, materials: &[Material]) {
         for vertex in &path.vertices {
             let material = &materials[vertex.material as usize];
             if vertex.emission > 0.0

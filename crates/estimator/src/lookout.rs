@@ -3,6 +3,8 @@
 use crate::emitters::Choice;
 use crate::medium::Medium;
 use crate::mirrors::Viewer;
+use crate::receiver::Receiver;
+use crate::sight::Seen;
 use crate::trace::Techniques;
 use glam::DVec3;
 use malus_geometry::Hit;
@@ -68,6 +70,8 @@ pub(crate) struct Lookout {
     pub choice: Choice,
     /// True where it could not: a sensor of radiance.
     pub alone: bool,
+    /// For a sensor: what it need not look for straight.
+    pub seen: Seen,
     /// Mirrors and panes passed since.
     pub chain: Passed,
     /// Probability with which the walk went on from there into a random direction.
@@ -76,41 +80,50 @@ pub(crate) struct Lookout {
     cos: f64,
     /// See [`Lookout::coupling`].
     local: f64,
+    /// How often a walk that is aimed at small mirrors goes the way of this one, for one that is not.
+    aimed: f64,
     /// Whether it is the sensor.
     sensor: bool,
 }
 
 impl Lookout {
-    /// A sensor of irradiance.
-    pub(crate) fn of_sensor(viewer: Viewer, direction: DVec3, choice: Choice) -> Self {
+    /// A sensor of irradiance, with the direction of the walk.
+    pub(crate) fn of_sensor(receiver: &Receiver, direction: DVec3, choice: Choice) -> Self {
+        let viewer = Viewer {
+            point: receiver.origin,
+            normal: receiver.normal,
+            sensor: true,
+        };
         Self {
             viewer,
             choice,
             alone: false,
+            seen: receiver.seen,
             chain: Passed::nothing(),
             diffuse: 1.0,
             cos: viewer.normal.dot(direction),
             local: 0.0,
+            aimed: 0.0,
             sensor: true,
         }
     }
 
     /// A sensor of radiance: nothing but the walk itself can find what arrives from its direction.
-    pub(crate) fn along(origin: DVec3, direction: DVec3) -> Self {
-        let viewer = Viewer {
-            point: origin,
-            normal: direction,
-            sensor: true,
-        };
+    pub(crate) fn along(receiver: &Receiver) -> Self {
         Self {
             alone: true,
-            ..Self::of_sensor(viewer, direction, Choice::Areas)
+            ..Self::of_sensor(receiver, receiver.normal, Choice::Areas)
         }
     }
 
     /// Goes on by a distance in m.
     pub(crate) fn go(&mut self, distance: f64) {
         self.chain.go(distance);
+    }
+
+    /// Passes a small mirror at which a companion is aimed with this density per solid angle.
+    pub(crate) fn aimed(&mut self, density: f64) {
+        self.aimed = density * PI / self.cos;
     }
 
     /// How often walks from emitters come by a point that this walk has reached and are joined to the sensor there, for
@@ -141,6 +154,7 @@ impl Lookout {
     ) {
         // Between the last point and this one, both ways pass the same distances: only the ends differ.
         self.local = self.coupling(arriving_cos, reverse, walks) / diffuse;
+        self.aimed = 0.0;
         self.sensor = false;
         self.alone = false;
         self.viewer = viewer;
@@ -162,6 +176,12 @@ impl Lookout {
         if self.alone {
             return 1.0;
         }
+        if self.sensor
+            && self.chain.is_straight()
+            && self.seen.holds(medium.emitters.patch(hit.triangle))
+        {
+            return 0.0;
+        }
         let probability = match self.chain.facets() {
             Some([]) => 1.0,
             Some(facets) if techniques.mirrored => {
@@ -178,7 +198,7 @@ impl Lookout {
         let by_chance = self.diffuse * self.cos / PI;
         let local = self.local * density;
         if probability <= 0.0 {
-            return 1.0 / (1.0 + local);
+            return 1.0 / (1.0 + local + self.aimed);
         }
         let met = by_chance * self.chain.odds;
         let looked = probability * density * distance * distance / cos;

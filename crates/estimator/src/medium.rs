@@ -1,6 +1,7 @@
 //! What light moves through: surfaces, what they do, and where light comes from.
 
 use crate::emitters::{Emitters, Site};
+use crate::glints::Glints;
 use crate::mirrors::{Drawn, Mirrors, Target, Viewer};
 use crate::random::Fresh;
 use glam::DVec3;
@@ -19,6 +20,8 @@ pub(crate) struct Medium<'a> {
     pub emitters: &'a Emitters<'a>,
     /// Flat mirrors that can be looked into.
     pub mirrors: &'a Mirrors,
+    /// Mirrors that cannot.
+    pub glints: &'a Glints,
     /// Whether anything lets light through.
     pub panes: bool,
 }
@@ -82,6 +85,23 @@ pub(crate) struct Way {
     pub odds: f64,
     /// Probability with which the way was drawn where panes left a choice.
     pub drawn: f64,
+}
+
+impl Odds {
+    /// The same for a walk that passes mirrors and panes alone; `surely` where it is to be mirrored.
+    pub(crate) fn of_mirrors(self, surely: bool) -> Self {
+        if surely {
+            return Self {
+                diffuse: 0.0,
+                mirror: 1.0,
+                through: 0.0,
+            };
+        }
+        Self {
+            diffuse: 0.0,
+            ..self
+        }
+    }
 }
 
 impl Meeting<'_> {

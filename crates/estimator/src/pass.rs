@@ -1,6 +1,7 @@
 //! Which models one run computes, and which walks serve which of them.
 
 use crate::emitters::Emitters;
+use crate::glints::Glints;
 use crate::medium::Medium;
 use crate::mirrors::Mirrors;
 use crate::trace::Techniques;
@@ -38,12 +39,9 @@ impl Channels {
         let mirrors = has_mirrors(&scene.materials);
         let mut channels = Self {
             components,
-            scalar: None,
-            diffuse: None,
-            along: None,
-            apart: None,
             found: components,
             count: components + 2,
+            ..Self::of_intensity()
         };
         if settings.compare_scalar {
             channels.scalar = Some(match settings.model {
@@ -59,6 +57,19 @@ impl Channels {
             });
         }
         channels
+    }
+
+    /// The sums of S0 alone.
+    pub(crate) fn of_intensity() -> Self {
+        Self {
+            components: 1,
+            scalar: None,
+            diffuse: None,
+            along: None,
+            apart: None,
+            found: 1,
+            count: 3,
+        }
     }
 
     fn open(&mut self, apart: bool) -> usize {
@@ -112,14 +123,17 @@ pub(crate) struct Passes<'a> {
 pub(crate) struct Modelled {
     materials: Vec<Material>,
     mirrors: Mirrors,
+    glints: Glints,
 }
 
 impl Modelled {
     /// The scene as a model has it.
     pub(crate) fn new(scene: &Scene, model: Model) -> Self {
         let materials = materials_of(model, &scene.materials);
+        let mirrors = Mirrors::new(&scene.surfaces, &materials);
         Self {
-            mirrors: Mirrors::new(&scene.surfaces, &materials),
+            glints: Glints::new(&scene.surfaces, &materials, &mirrors),
+            mirrors,
             materials,
         }
     }
@@ -131,6 +145,7 @@ impl Modelled {
             materials: &self.materials,
             emitters,
             mirrors: &self.mirrors,
+            glints: &self.glints,
             panes: self.materials.iter().any(|m| m.optics.is_pane()),
         }
     }
@@ -146,8 +161,10 @@ impl<'a> Passes<'a> {
 /// What walks have cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Effort {
-    /// Rays asked of the geometry.
+    /// Rays asked of the geometry, those of joins left out.
     pub rays: u64,
+    /// Vertices joined to sensors.
+    pub joins: u64,
     /// Walks cut off at their greatest length.
     pub truncated: u64,
 }
@@ -155,6 +172,7 @@ pub(crate) struct Effort {
 impl AddAssign for Effort {
     fn add_assign(&mut self, other: Self) {
         self.rays += other.rays;
+        self.joins += other.joins;
         self.truncated += other.truncated;
     }
 }

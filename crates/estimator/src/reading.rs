@@ -1,9 +1,10 @@
 //! From tallies to readings: means with their errors, and what pairs of models say together.
 
+use crate::allocation::Allocation;
 use crate::pass::Channels;
 use crate::receiver::Receiver;
 use crate::results::{Group, Paired, Reading, Shares};
-use crate::statistics::{Estimate, Means, Tally, degree_of_linear_polarisation};
+use crate::statistics::{Estimate, Means, Replica, Tally, degree_of_linear_polarisation};
 use malus_scene::Scene;
 
 /// How the sums of a run are read.
@@ -11,16 +12,21 @@ pub(crate) struct Readings<'a> {
     scene: &'a Scene,
     channels: Channels,
     receivers: &'a [Receiver],
+    allocation: &'a Allocation,
     /// What is known without chance, one Stokes vector a sensor; S0 is the same in every model.
     exact: Vec<[f64; 4]>,
-    unmet: Unmet,
+    /// One entry a sensor.
+    unmet: Vec<Unmet>,
+    /// Whether sensors tell each other what they have met.
+    shared: bool,
 }
 
 /// Light that a walk from a sensor meets by chance alone, off a mirror, and may not have met yet.
 ///
 /// The spread between replicas tells nothing of what none of them has met. So every standard error counts one more
 /// walk than there were: one that met the brightest emitter in a mirror, which adds its exitance/n in squares, or the
-/// whole of what the emitters could send from half a scene's radius away where that is less.
+/// whole of what the emitters could send from half a scene's radius away where that is less. Where walks are aimed at such
+/// mirrors, all sensors' walks count together, and none takes what it has met for surer than they do on average.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Unmet {
     /// Irradiance that one walk brings that meets the brightest emitter, in unit/m².
@@ -30,11 +36,25 @@ pub(crate) struct Unmet {
 }
 
 impl Unmet {
-    /// The error with that of `walks` walks that have not met what they might.
-    fn widened(self, standard_error: f64, walks: f64) -> f64 {
-        let unmet = (self.one / walks).min(self.most);
-        (standard_error * standard_error + unmet * unmet).sqrt()
+    /// The mean over some sensors.
+    fn mean(several: impl ExactSizeIterator<Item = Self>) -> Self {
+        let count = several.len().max(1) as f64;
+        several.fold(Self::default(), |sum, next| Self {
+            one: sum.one + next.one / count,
+            most: sum.most + next.most / count,
+        })
     }
+
+    /// Variance of so many walks that have not met what they might.
+    fn variance(self, walks: f64) -> f64 {
+        let unmet = (self.one / walks).min(self.most);
+        unmet * unmet
+    }
+}
+
+/// A standard error with so much variance more.
+fn widened(standard_error: f64, variance: f64) -> f64 {
+    (standard_error * standard_error + variance).sqrt()
 }
 
 impl<'a> Readings<'a> {
@@ -44,8 +64,10 @@ impl<'a> Readings<'a> {
         scene: &'a Scene,
         channels: Channels,
         receivers: &'a [Receiver],
+        allocation: &'a Allocation,
         exact: &[[f64; N]],
-        unmet: Unmet,
+        unmet: Vec<Unmet>,
+        shared: bool,
     ) -> Self {
         let padded = |stokes: &[f64; N]| {
             std::array::from_fn(|component| stokes.get(component).copied().unwrap_or(0.0))
@@ -54,52 +76,99 @@ impl<'a> Readings<'a> {
             scene,
             channels,
             receivers,
+            allocation,
             exact: exact.iter().map(padded).collect(),
             unmet,
+            shared,
         }
     }
 
-    /// A sum a walk, of both kinds of walk together.
-    fn at(&self, means: &Means, index: usize) -> f64 {
-        means.at(index) + means.at(self.receivers.len() * self.channels.count + index)
+    /// What walks from a sensor and walks from the emitters bring it, on average.
+    fn parts(&self, means: &Means, sensor: usize, channel: usize) -> [f64; 2] {
+        let index = sensor * self.channels.count + channel;
+        let walks = self.allocation.walks(sensor, means.points());
+        let half = self.receivers.len() * self.channels.count;
+        [means.over(index, walks), means.at(half + index)]
+    }
+
+    /// Both together.
+    fn at(&self, means: &Means, sensor: usize, channel: usize) -> f64 {
+        let [gathered, launched] = self.parts(means, sensor, channel);
+        gathered + launched
+    }
+
+    /// Walks taken at a sensor by all replicas together.
+    fn walks(&self, tally: &Tally, sensor: usize) -> f64 {
+        let walks = |replica: &Replica| self.allocation.walks(sensor, replica.points);
+        tally.replicas().map(walks).sum::<u64>() as f64
     }
 
     /// What each way of finding light has brought of S0, as shares of its sum over the free sensors.
     #[must_use]
     pub(crate) fn shares(&self, tally: &Tally) -> Shares {
         let mut shares = Shares::default();
-        let count = self.channels.count;
-        let half = self.receivers.len() * count;
         for sensor in 0..self.receivers.len() {
             if self.receivers[sensor].enclosed {
                 continue;
             }
-            let first = sensor * count;
-            let mean = |index: usize| tally.estimate(|means| means.at(index)).mean;
-            let [mirrored, met] = [0, 1].map(|part| mean(first + self.channels.found + part));
+            let part = |channel: usize, kind: usize| {
+                let read = |means: &Means| self.parts(means, sensor, channel)[kind];
+                tally.estimate(read).mean
+            };
+            let [mirrored, met] = [0, 1].map(|found| part(self.channels.found + found, 0));
             shares.exact += self.exact[sensor][0];
-            shares.looked += mean(first) - mirrored - met;
+            shares.looked += part(0, 0) - mirrored - met;
             shares.mirrored += mirrored;
             shares.met += met;
-            shares.local += mean(half + first);
+            shares.local += part(0, 1);
         }
         shares.normalised()
     }
 
-    fn s0(&self, tally: &Tally, sensor: usize) -> Estimate {
-        let index = sensor * self.channels.count;
-        let mut estimate = tally.estimate(|means| self.at(means, index));
+    /// Variance at each sensor that the spread of its own replicas does not tell.
+    fn hidden(&self, tally: &Tally) -> Vec<f64> {
+        let free = |&sensor: &usize| !self.receivers[sensor].enclosed;
+        let walks: Vec<f64> = (0..self.receivers.len())
+            .map(|sensor| self.walks(tally, sensor))
+            .collect();
+        if !self.shared || self.unmet.iter().all(|u| u.one <= 0.0) {
+            let each = self.unmet.iter().zip(&walks);
+            return each.map(|(unmet, &walks)| unmet.variance(walks)).collect();
+        }
+        let met = |sensor: usize| {
+            let read = |means: &Means| self.parts(means, sensor, self.channels.found + 1)[0];
+            tally.estimate(read).standard_error.powi(2)
+        };
+        let met: Vec<f64> = (0..walks.len()).map(met).collect();
+        let (mut all, mut variance) = (0.0, 0.0);
+        for sensor in (0..walks.len()).filter(free) {
+            all += walks[sensor];
+            variance += met[sensor] * walks[sensor] * walks[sensor];
+        }
+        // Of one walk, on average over all of them.
+        let of_one = if all > 0.0 { variance / all } else { 0.0 };
+        (0..walks.len())
+            .map(|sensor| {
+                let shared = of_one / walks[sensor].max(1.0);
+                self.unmet[sensor].variance(all.max(1.0)) + (shared - met[sensor]).max(0.0)
+            })
+            .collect()
+    }
+
+    fn s0(&self, tally: &Tally, sensor: usize, hidden: f64) -> Estimate {
+        let mut estimate = tally.estimate(|means| self.at(means, sensor, 0));
         estimate.mean += self.exact[sensor][0];
-        estimate.standard_error = self.unmet.widened(estimate.standard_error, walks(tally));
+        estimate.standard_error = widened(estimate.standard_error, hidden);
         estimate
     }
 
     /// Largest standard error of S0 as a share of max(S0, 10⁻³ · mean S0) over the free sensors.
     #[must_use]
     pub(crate) fn relative_error(&self, tally: &Tally) -> f64 {
+        let hidden = self.hidden(tally);
         let free: Vec<Estimate> = (0..self.receivers.len())
             .filter(|&sensor| !self.receivers[sensor].enclosed)
-            .map(|sensor| self.s0(tally, sensor))
+            .map(|sensor| self.s0(tally, sensor, hidden[sensor]))
             .collect();
         let mean = free.iter().map(|e| e.mean).sum::<f64>() / free.len().max(1) as f64;
         free.iter()
@@ -112,34 +181,40 @@ impl<'a> Readings<'a> {
     #[must_use]
     pub(crate) fn groups(&self, tally: &Tally) -> Vec<Group> {
         let mut first = 0;
+        let hidden = self.hidden(tally);
         self.scene
             .sensors
             .iter()
             .map(|sensor| {
                 let range = first..first + sensor.points.len();
                 first = range.end;
-                self.group(tally, range)
+                self.group(tally, range, &hidden)
             })
             .collect()
     }
 
-    fn group(&self, tally: &Tally, range: std::ops::Range<usize>) -> Group {
+    fn group(&self, tally: &Tally, range: std::ops::Range<usize>, hidden: &[f64]) -> Group {
         let free: Vec<usize> = range
             .clone()
             .filter(|&sensor| !self.receivers[sensor].enclosed)
             .collect();
         let count = free.len().max(1) as f64;
         let mean = |means: &Means, channel: usize| {
-            let at = |&sensor: &usize| self.at(means, sensor * self.channels.count + channel);
+            let at = |&sensor: &usize| self.at(means, sensor, channel);
             free.iter().map(at).sum::<f64>() / count
         };
         let exact = free.iter().map(|&s| self.exact[s][0]).sum::<f64>() / count;
         let main = tally.estimate(|means| mean(means, 0));
         // Points are walked from independently, so a mean over them has as many times the walks.
-        let widened = |error| self.unmet.widened(error, count * walks(tally));
+        let walks: f64 = free.iter().map(|&s| self.walks(tally, s)).sum();
+        let unmet = Unmet::mean(free.iter().map(|&s| self.unmet[s]));
+        let variance = unmet.variance(walks.max(1.0));
+        let widened = |error| widened(error, variance);
         let paired = |channel| Paired::new(tally, exact, channel, mean, widened);
         Group {
-            readings: range.map(|sensor| self.reading(tally, sensor)).collect(),
+            readings: range
+                .map(|sensor| self.reading(tally, sensor, hidden[sensor]))
+                .collect(),
             mean: main.mean + exact,
             mean_standard_error: widened(main.standard_error),
             scalar: self.channels.scalar.map(paired),
@@ -147,25 +222,23 @@ impl<'a> Readings<'a> {
         }
     }
 
-    fn reading(&self, tally: &Tally, sensor: usize) -> Reading {
-        let first = sensor * self.channels.count;
+    fn reading(&self, tally: &Tally, sensor: usize, hidden: f64) -> Reading {
         let enclosed = self.receivers[sensor].enclosed;
         let widened = |error| match enclosed {
             true => error,
-            false => self.unmet.widened(error, walks(tally)),
+            false => widened(error, hidden),
         };
         let mut stokes = self.exact[sensor];
         let mut standard_error = [0.0; 4];
         for component in 0..self.channels.components {
-            let estimate = tally.estimate(|means| self.at(means, first + component));
+            let estimate = tally.estimate(|means| self.at(means, sensor, component));
             stokes[component] += estimate.mean;
             standard_error[component] = widened(estimate.standard_error);
         }
         let dolp = if self.channels.components > 1 {
             degree_of_linear_polarisation(stokes, |[c0, c1, c2]| {
-                tally.estimate(|m| {
-                    c0 * self.at(m, first) + c1 * self.at(m, first + 1) + c2 * self.at(m, first + 2)
-                })
+                let at = |means: &Means, channel| self.at(means, sensor, channel);
+                tally.estimate(|m| c0 * at(m, 0) + c1 * at(m, 1) + c2 * at(m, 2))
             })
         } else {
             Estimate {
@@ -173,7 +246,7 @@ impl<'a> Readings<'a> {
                 standard_error: 0.0,
             }
         };
-        let at = |means: &Means, channel: usize| self.at(means, first + channel);
+        let at = |means: &Means, channel: usize| self.at(means, sensor, channel);
         let exact = self.exact[sensor][0];
         let paired = |channel| Paired::new(tally, exact, channel, at, widened);
         Reading {
@@ -217,11 +290,6 @@ impl Paired {
     }
 }
 
-/// Walks taken at each sensor by all replicas together.
-fn walks(tally: &Tally) -> f64 {
-    tally.replicas().map(|replica| replica.points).sum::<u64>() as f64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -233,8 +301,8 @@ mod tests {
             most: 0.5,
         };
         // √(0.4² + (30/100)²) = 0.5; at ten walks 30/10 is more than there can be: √(1.2² + 0.5²) = 1.3.
-        assert!((unmet.widened(0.4, 100.0) - 0.5).abs() < 1e-15);
-        assert!((unmet.widened(1.2, 10.0) - 1.3).abs() < 1e-15);
-        assert!((Unmet::default().widened(0.4, 1.0) - 0.4).abs() < 1e-15);
+        assert!((widened(0.4, unmet.variance(100.0)) - 0.5).abs() < 1e-15);
+        assert!((widened(1.2, unmet.variance(10.0)) - 1.3).abs() < 1e-15);
+        assert!((widened(0.4, Unmet::default().variance(1.0)) - 0.4).abs() < 1e-15);
     }
 }

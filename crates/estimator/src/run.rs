@@ -1,16 +1,19 @@
 //! A run: replicas taken further in steps until a stopping rule holds.
 
+use crate::allocation::Allocation;
 use crate::choose::{blind_spots, erratic, techniques};
 use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::exact;
+use crate::gather::Aims;
 use crate::ledger::Ledger;
 use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
 use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
 use crate::results::{Answer, Progress, Results, Stop};
+use crate::sight::Sight;
 use crate::state::{Shard, State, StateError};
 use crate::statistics::REPLICAS;
 use crate::trace::LONGEST;
@@ -90,7 +93,7 @@ fn run_with<const N: usize>(
     state.check(limit)?;
     let channels = Channels::new(scene, settings, representation);
     let emitters = Emitters::new(scene);
-    let receivers = Receiver::all(scene);
+    let mut receivers = Receiver::all(scene);
     let (techniques, estimator_reason) = techniques(settings.estimator, &receivers);
     let main = Modelled::new(scene, settings.model);
     let apart = channels.apart.map(|_| match settings.model {
@@ -106,24 +109,45 @@ fn run_with<const N: usize>(
         let side = settings.cell.unwrap_or(direct::SIDE);
         Cells::new(&scene.surfaces, &receivers, side)
     });
+    let sight = techniques
+        .gather
+        .then(|| Sight::new(&scene.surfaces, &emitters, &mut receivers));
+    let exact = match cells {
+        // Counted like all other light.
+        Some(_) => vec![[0.0; N]; receivers.len()],
+        None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref()),
+    };
+    let aims = Aims::all(&passes, &receivers);
+    let allocation = if techniques.gather && techniques.local > 0.0 {
+        let exact = |sensor: usize| exact[sensor][0];
+        Allocation::piloted(&passes, &receivers, &aims, exact, settings.seed)
+    } else {
+        Allocation::even(receivers.len())
+    };
     let engine = Engine::<N> {
         passes,
         channels,
         receivers: &receivers,
+        allocation: &allocation,
+        aims: &aims,
         cells: cells.as_ref(),
         seed: settings.seed,
     };
-    let exact = match cells {
-        // Counted like all other light.
-        Some(_) => vec![[0.0; N]; receivers.len()],
-        None => exact::from_sources::<N>(&passes.main, &receivers),
-    };
     let unmet = match &cells {
-        Some(cells) => direct::unmet(&passes.main, cells),
-        None if techniques.gather => unmet(&passes, &emitters),
-        None => Unmet::default(),
+        Some(cells) => vec![direct::unmet(&passes.main, cells); receivers.len()],
+        None if techniques.gather => unmet(&passes, &emitters, &aims),
+        None => vec![Unmet::default(); receivers.len()],
     };
-    let readings = Readings::new(scene, channels, &receivers, &exact, unmet);
+    let shared = techniques.mirrored;
+    let readings = Readings::new(
+        scene,
+        channels,
+        &receivers,
+        &allocation,
+        &exact,
+        unmet,
+        shared,
+    );
 
     engine.fit(&mut state.walks)?;
     let mut taken = state.walks.points();
@@ -206,8 +230,9 @@ fn run_with<const N: usize>(
     })
 }
 
-/// What may lie in mirrors that nothing looks into, and has not been met by chance yet.
-fn unmet(passes: &Passes, emitters: &Emitters) -> Unmet {
+/// What may lie for each sensor in mirrors that nothing looks into, and has not been met by chance yet.
+fn unmet(passes: &Passes, emitters: &Emitters, aims: &[Aims]) -> Vec<Unmet> {
+    let all = emitters.unmet();
     let share = |medium: &Medium| {
         if passes.techniques.mirrored {
             medium.mirrors.unseen()
@@ -215,17 +240,17 @@ fn unmet(passes: &Passes, emitters: &Emitters) -> Unmet {
             f64::from(u8::from(has_mirrors(medium.materials)))
         }
     };
-    let share = passes.media().map(share).fold(0.0, f64::max);
-    let unmet = emitters.unmet();
-    if share > 0.0 {
-        // The most that there can be of it is what such mirrors can send on.
-        Unmet {
-            most: unmet.most * share,
-            ..unmet
-        }
-    } else {
-        Unmet::default()
-    }
+    // The most that there can be of it is what such mirrors can send on.
+    let most = passes.media().map(share).fold(0.0, f64::max);
+    let one = |aims: &Aims| match passes.techniques.mirrored {
+        true => aims.greatest(),
+        false => most,
+    };
+    let unmet = |aims: &Aims| Unmet {
+        one: all.one * one(aims),
+        most: all.most * most,
+    };
+    aims.iter().map(unmet).collect()
 }
 
 fn representation_reason(scene: &Scene, settings: &Settings) -> String {

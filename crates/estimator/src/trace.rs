@@ -6,14 +6,18 @@
 
 use crate::direction::cosine_weighted;
 use crate::emitters::{Choice, Start, State};
+use crate::glints::Aim;
 use crate::launched::{Launched, Rival};
 use crate::lookout::Lookout;
 use crate::medium::{Medium, Meeting, Step, target};
 use crate::mirrors::Viewer;
 use crate::random::{Purpose, Uniforms};
+use crate::receiver::Receiver;
+use crate::sight::Seen;
 use glam::DVec3;
 use malus_geometry::Hit;
 use malus_optics::Reflection;
+use std::f64::consts::PI;
 use std::ops::Range;
 
 /// Longest walk, in vertices. What is left of it then is dropped and counted.
@@ -129,13 +133,27 @@ pub(crate) struct Walk<'a> {
     origin: DVec3,
     direction: DVec3,
     depth: u32,
+    /// How walks are aimed at small mirrors from this sensor.
+    aim: Option<&'a Aim<'a>>,
     role: Role<'a>,
     /// True if the walk ended at [`LONGEST`].
     pub truncated: bool,
 }
 
+/// A walk from a sensor that is aimed at a small mirror, and takes the way of its reflection.
+struct Aimed {
+    /// The mirror.
+    triangle: u32,
+    /// Density of the direction for a walk that is not aimed.
+    by_chance: f64,
+    /// Share of the light met for which this walk answers.
+    share: f64,
+}
+
 /// What a walk is for.
 enum Role<'a> {
+    /// It looks for light by mirrors alone, the first of which it was aimed at.
+    Aimed(Aimed),
     /// It carries light from an emitter.
     Launched(Launched<'a>),
     /// It looks for light, from a sensor.
@@ -157,31 +175,33 @@ impl<'a> Walk<'a> {
             origin: start.origin,
             direction: start.direction,
             depth: 0,
+            aim: None,
             role: Role::Launched(Launched::new(start)),
             truncated: false,
         }
     }
 
-    /// A walk from a sensor, against the light, with density cos θ/π.
+    /// A walk from a sensor, against the light: with density cos θ/π, or where its sensor looks.
     pub(crate) fn from_sensor(
         medium: Medium<'a>,
         techniques: Techniques,
         uniforms: Uniforms,
-        origin: DVec3,
-        normal: DVec3,
+        receiver: &Receiver,
+        aim: Option<&'a Aim<'a>>,
     ) -> Self {
-        let [_, u, v, _] = uniforms.at(0, Purpose::Scatter);
-        let direction = cosine_weighted(normal, [u, v]);
-        let viewer = Viewer {
-            point: origin,
-            normal,
-            sensor: true,
-        };
-        // Light straight from sources without geometry is summed exactly, but in mirrors it is looked for.
-        let choice = if techniques.mirrored && !medium.mirrors.is_empty() {
-            Choice::All
+        let Receiver { origin, normal, .. } = *receiver;
+        let (direction, lookout) = if receiver.is_irradiance() {
+            let [_, u, v, _] = uniforms.at(0, Purpose::Scatter);
+            let direction = cosine_weighted(normal, [u, v]);
+            // Light straight from sources without geometry is summed exactly, but in mirrors it is looked for.
+            let choice = if techniques.mirrored && !medium.mirrors.is_empty() {
+                Choice::All
+            } else {
+                Choice::Areas
+            };
+            (direction, Lookout::of_sensor(receiver, direction, choice))
         } else {
-            Choice::Areas
+            (normal, Lookout::along(receiver))
         };
         Self {
             medium,
@@ -190,37 +210,53 @@ impl<'a> Walk<'a> {
             origin,
             direction,
             depth: 0,
-            role: Role::Looking(Lookout::of_sensor(viewer, direction, choice)),
+            aim,
+            role: Role::Looking(lookout),
             truncated: false,
         }
     }
 
-    /// A walk from a point against the light that arrives from one direction.
-    pub(crate) fn along_sight(
+    /// The companion of a walk from a sensor: aimed at a small mirror, it looks for emitters there. `None` where the mirror
+    /// lies below the horizon.
+    pub(crate) fn aimed(
         medium: Medium<'a>,
         techniques: Techniques,
         uniforms: Uniforms,
-        origin: DVec3,
-        direction: DVec3,
-    ) -> Self {
-        Self {
+        receiver: &Receiver,
+        aim: &'a Aim<'a>,
+    ) -> Option<Self> {
+        let (triangle, direction) = aim.drawn(uniforms.at(0, Purpose::Glint));
+        let cos = direction.dot(receiver.normal);
+        (cos > 0.0).then(|| Self {
             medium,
             techniques,
             uniforms,
-            origin,
+            origin: receiver.origin,
             direction,
             depth: 0,
-            role: Role::Looking(Lookout::along(origin, direction)),
+            aim: Some(aim),
+            role: Role::Aimed(Aimed {
+                triangle,
+                by_chance: cos / PI,
+                share: 0.0,
+            }),
             truncated: false,
-        }
+        })
     }
 
     /// Appends what the sensor that the walk starts from sees of the emitters.
     pub(crate) fn look(&self, path: &mut Path<'a>) {
         if let Role::Looking(lookout) = &self.role
             && !lookout.alone
+            && !(lookout.seen.everything() && lookout.choice == Choice::Areas)
         {
-            self.connect(path, lookout.viewer, lookout.choice, 1.0, &|_| 0.0);
+            let look = Look {
+                viewer: lookout.viewer,
+                choice: lookout.choice,
+                known: lookout.seen,
+                diffuse: 1.0,
+            };
+            self.connect(path, &look, &|_| 0.0);
         }
     }
 
@@ -251,6 +287,17 @@ impl<'a> Walk<'a> {
         }
         self.depth += 1;
         let (hit, meeting) = self.medium.meet(self.origin, self.direction)?;
+        let emission = self.emission_share(&hit, &meeting);
+        let density = self.aim.map_or(0.0, |aim| {
+            aim.density(hit.triangle, hit.distance, meeting.angle.0)
+        });
+        if let (Role::Aimed(aimed), 1) = (&mut self.role, self.depth) {
+            // What stands before the mirror was not aimed at.
+            if hit.triangle != aimed.triangle {
+                return None;
+            }
+            aimed.share = aimed.by_chance / (aimed.by_chance + density);
+        }
         let normal = meeting.normal;
         let off = normal * self.medium.surfaces.offset();
         let mut vertex = Vertex {
@@ -260,7 +307,7 @@ impl<'a> Walk<'a> {
             arriving: self.direction,
             onward: self.direction,
             matrix: Reflection::NONE,
-            emission: self.emission_share(&hit, &meeting),
+            emission,
             connections: 0..0,
             event: Event::Absorbed,
             probability: 1.0,
@@ -271,12 +318,13 @@ impl<'a> Walk<'a> {
             return Some(vertex);
         }
         let (mirror, through) = meeting.matrices();
-        let odds = meeting.odds(&mirror, &through);
+        let mut odds = meeting.odds(&mirror, &through);
         match &mut self.role {
+            Role::Aimed(_) => odds = odds.of_mirrors(self.depth == 1),
             Role::Launched(launched) => launched.go(hit.distance),
             Role::Looking(lookout) => lookout.go(hit.distance),
         }
-        if meeting.material.optics.scattering() > 0.0 {
+        if odds.diffuse > 0.0 && meeting.material.optics.scattering() > 0.0 {
             self.join(path, &mut vertex, &meeting, odds.diffuse);
         }
         let [lobe, u, v, _] = self.uniforms.at(self.depth, Purpose::Scatter);
@@ -293,6 +341,7 @@ impl<'a> Walk<'a> {
             };
             let local = self.techniques.local;
             match &mut self.role {
+                Role::Aimed(_) => {}
                 Role::Launched(launched) => launched.scatter(vertex.rival, odds.diffuse, out),
                 Role::Looking(lookout) => {
                     lookout.scatter(
@@ -311,8 +360,14 @@ impl<'a> Walk<'a> {
             vertex.matrix = mirror;
             self.direction = (self.direction + normal * (2.0 * meeting.angle.0)).normalize();
             match &mut self.role {
+                Role::Aimed(_) => {}
                 Role::Launched(launched) => launched.chain.reflect(meeting.facet, odds.mirror),
-                Role::Looking(lookout) => lookout.chain.reflect(meeting.facet, odds.mirror),
+                Role::Looking(lookout) => {
+                    lookout.chain.reflect(meeting.facet, odds.mirror);
+                    if self.depth == 1 {
+                        lookout.aimed(density);
+                    }
+                }
             }
         } else if lobe < odds.diffuse + odds.mirror + odds.through {
             vertex.event = Event::Through;
@@ -320,6 +375,7 @@ impl<'a> Walk<'a> {
             vertex.matrix = through;
             self.origin = hit.position - off;
             match &mut self.role {
+                Role::Aimed(_) => {}
                 Role::Launched(launched) => launched.chain.odds *= odds.through,
                 Role::Looking(lookout) => lookout.chain.odds *= odds.through,
             }
@@ -340,13 +396,19 @@ impl<'a> Walk<'a> {
                 let cos = meeting.angle.0;
                 vertex.rival = launched.rival(&self.medium, self.techniques, viewer, cos);
             }
-            Role::Launched(_) => {}
+            Role::Launched(_) | Role::Aimed(_) => {}
             Role::Looking(lookout) => {
                 let first = path.connections.len();
                 let cos = meeting.angle.0;
                 let local = self.techniques.local;
                 let coupling = |toward: DVec3| lookout.coupling(cos, bound(meeting, toward), local);
-                self.connect(path, viewer, Choice::All, diffuse, &coupling);
+                let look = Look {
+                    viewer,
+                    choice: Choice::All,
+                    known: Seen::default(),
+                    diffuse,
+                };
+                self.connect(path, &look, &coupling);
                 vertex.connections = first..path.connections.len();
             }
         }
@@ -359,6 +421,8 @@ impl<'a> Walk<'a> {
         };
         match &self.role {
             Role::Launched(_) => 0.0,
+            // At first it is the mirror itself that is met, whose own light is not looked for.
+            Role::Aimed(aimed) => aimed.share,
             Role::Looking(lookout) => lookout.emission_share(
                 &self.medium,
                 self.techniques,
@@ -371,16 +435,14 @@ impl<'a> Walk<'a> {
 
     /// Appends what a point sees of one emitter, straight and in mirrors, weighted against other techniques.
     ///
-    /// `diffuse` is the probability with which the walk goes on from there into a random direction, and `coupling` what
-    /// [`Lookout::coupling`] says of it.
-    fn connect(
-        &self,
-        path: &mut Path<'a>,
-        viewer: Viewer,
-        choice: Choice,
-        diffuse: f64,
-        coupling: &dyn Fn(DVec3) -> f64,
-    ) {
+    /// `coupling` is what [`Lookout::coupling`] says of the point.
+    fn connect(&self, path: &mut Path<'a>, look: &Look, coupling: &dyn Fn(DVec3) -> f64) {
+        let Look {
+            viewer,
+            choice,
+            known,
+            diffuse,
+        } = *look;
         let Medium {
             emitters, mirrors, ..
         } = self.medium;
@@ -413,7 +475,7 @@ impl<'a> Walk<'a> {
             .map_or(-site.direction(), |from| from - viewer.point);
         let square = span.length_squared();
         let toward = span / square.sqrt();
-        let direct = !viewer.sensor || area_density.is_some();
+        let direct = !viewer.sensor || area_density.is_some() && !known.holds(site.patch);
         // A point at the source itself has no direction to it.
         if direct
             && toward.dot(viewer.normal) > 0.0
@@ -470,6 +532,16 @@ impl<'a> Walk<'a> {
             },
         );
     }
+}
+
+/// Who looks for an emitter, and for which.
+struct Look {
+    viewer: Viewer,
+    choice: Choice,
+    /// What is not looked for straight.
+    known: Seen,
+    /// Probability with which the walk goes on from there into a random direction.
+    diffuse: f64,
 }
 
 /// Probability with which a walk that came from `direction` would be scattered where this one was met.

@@ -40,11 +40,18 @@ pub struct Facets {
 }
 
 impl Facet {
+    /// Height of a point over the plane, in m.
+    #[must_use]
+    #[inline]
+    pub fn above(&self, point: DVec3) -> f64 {
+        point.dot(self.normal) - self.height
+    }
+
     /// The point mirrored in the plane.
     #[must_use]
     #[inline]
     pub fn image(&self, point: DVec3) -> DVec3 {
-        point - self.normal * (2.0 * (point.dot(self.normal) - self.height))
+        point - self.normal * (2.0 * self.above(point))
     }
 
     /// The direction mirrored in the plane.
@@ -156,7 +163,12 @@ struct Neighbours {
 
 impl Neighbours {
     fn new(surfaces: &Surfaces, triangles: &[u32]) -> Self {
-        let welded = weld(surfaces.mesh(), surfaces.tolerance());
+        let mesh = surfaces.mesh();
+        let used: Vec<[u32; 3]> = triangles
+            .iter()
+            .map(|&triangle| mesh.triangles[triangle as usize])
+            .collect();
+        let welded = weld(mesh, &used, surfaces.tolerance());
         let mut found = Self {
             edges: Vec::with_capacity(3 * triangles.len()),
             welded,
