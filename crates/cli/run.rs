@@ -78,6 +78,7 @@ fn compute_whole(command: &args::Run, job: &Job, part: &mut Part) -> anyhow::Res
     let mut complete = results.complete;
     for index in pictured(part, job.scene) {
         if job.interrupt.asked() {
+            complete = false;
             break;
         }
         job.shoot(part, index)?;
