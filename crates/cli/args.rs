@@ -1,8 +1,13 @@
 //! The command line as typed.
 
+use crate::failure::Failure;
+use anyhow::anyhow;
 use clap::{Args, Parser, Subcommand};
 use malus_scene::Override;
 use std::path::PathBuf;
+
+/// More threads than any machine has cores: beyond, starting them is all that a run would do.
+const MOST_THREADS: usize = 1024;
 
 /// Polarised light in rooms: illuminance or irradiance as a Stokes vector, with an error bar on every number.
 #[derive(Debug, Parser)]
@@ -34,6 +39,29 @@ grid, and summary.json. A stop by error or by time prints the --samples that rep
 Exit status: 0 done, 1 the run failed, 2 bad arguments or a bad scene, 130 interrupted (Ctrl-C \
 once: what is there is written and marked incomplete; twice: at once, without results).";
 
+const SWEEP_EXAMPLES: &str = "\
+Examples:
+  malus sweep study-floor.toml                    every variant of the study; results go to results/study-floor
+  malus sweep study.toml --samples 4096 --sensors
+
+A study file names a scene and what varies in it, by the keys that --set takes:
+  scene = \"office.toml\"
+  [grid]                                          every combination
+  \"material.Floor.a\" = [0, 0.2, 0.4]
+  [list]                                          rows of a table whose header holds keys
+  file = \"variants.csv\"
+  [sample]                                        a seeded Latin hypercube
+  count = 32
+  \"material.Floor.n\" = { from = 1.3, to = 2.0 }
+Several tables combine, each row of one with each of another. All variants take the walks that the stopping rule \
+gives the base, the scene as it stands.
+
+Results: variants.csv (a row a variant, written as it is finished), study.json (which variants differ, a ranking, \
+sensitivities), a picture <sensor>-trade.svg of each sensor.
+
+Exit status: 0 done, 1 a variant failed (the others are finished), 2 bad arguments, a bad scene or a bad study, 130 \
+interrupted.";
+
 const CHECK_EXAMPLES: &str = "\
 Examples:
   malus check office.toml
@@ -59,6 +87,9 @@ pub enum Command {
     /// Compute a scene: writes tables, plans and a summary, prints a short table
     #[command(after_help = RUN_EXAMPLES)]
     Run(Box<Run>),
+    /// Evaluate design variants of one scene, with the differences between them: which differ, and which key matters
+    #[command(after_help = SWEEP_EXAMPLES)]
+    Sweep(Box<Sweep>),
     /// Read a scene and say what was understood and what is wrong with it; compute nothing
     #[command(after_help = CHECK_EXAMPLES)]
     Check(Check),
@@ -78,6 +109,50 @@ pub struct Run {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
+    /// How to compute it
+    #[command(flatten)]
+    pub computing: Computing,
+
+    /// Draw no plans
+    #[arg(long)]
+    pub no_pictures: bool,
+
+    /// Show no progress and no table; warnings and errors stay
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// `malus sweep`.
+#[derive(Args, Debug)]
+pub struct Sweep {
+    /// Study file
+    #[arg(value_name = "STUDY.toml")]
+    pub study: PathBuf,
+
+    /// Directory of the results [default: results/<study file's name without .toml>]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// How to compute it
+    #[command(flatten)]
+    pub computing: Computing,
+
+    /// Write each variant's sensor points to variants/NNN/sensors.csv
+    #[arg(long)]
+    pub sensors: bool,
+
+    /// Draw nothing
+    #[arg(long)]
+    pub no_pictures: bool,
+
+    /// Show no progress and no tables; warnings and errors stay
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// How a scene is computed.
+#[derive(Args, Debug)]
+pub struct Computing {
     /// Stop after so many walks of light, rounded up to whole rounds.
     /// A stopping rule given here replaces all those of the scene file; of several, the first one reached stops the run
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
@@ -116,14 +191,6 @@ pub struct Run {
     /// Put a value in place of the scene file's, by its dotted path, e.g. material.floor.a=0.3 (may be repeated)
     #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
     pub set: Vec<Override>,
-
-    /// Draw no plans
-    #[arg(long)]
-    pub no_pictures: bool,
-
-    /// Show no progress and no table; warnings and errors stay
-    #[arg(short, long)]
-    pub quiet: bool,
 }
 
 /// `malus check`.
@@ -196,7 +263,7 @@ impl RunKey<'_> {
     }
 }
 
-impl Run {
+impl Computing {
     /// The options given that stand for keys of the scene file.
     pub fn keys(&self) -> Vec<RunKey<'_>> {
         [
@@ -221,6 +288,34 @@ impl Run {
         let options = self.keys();
         let options = options.iter().map(RunKey::as_override);
         self.set.iter().cloned().chain(options).collect()
+    }
+
+    /// What is wrong with a scene, an option named the way it was typed.
+    pub fn refused(&self, error: &malus_scene::Error) -> Failure {
+        let mut text = error.to_string();
+        for entry in self.keys() {
+            let as_set = format!("--set {}={}", entry.key, entry.value);
+            text = text.replace(&as_set, &format!("--{} {}", entry.option, entry.value));
+        }
+        Failure::input(anyhow!(text))
+    }
+
+    /// Number of threads asked for, or as many as there are cores.
+    ///
+    /// # Errors
+    /// No such number.
+    pub fn threads(&self) -> Result<usize, Failure> {
+        let Some(text) = &self.threads else {
+            return Ok(std::thread::available_parallelism().map_or(1, usize::from));
+        };
+        text.parse()
+            .ok()
+            .filter(|count| (1..=MOST_THREADS).contains(count))
+            .ok_or_else(|| {
+                Failure::input(anyhow!(
+                    "--threads {text}: must be a whole number from 1 to {MOST_THREADS}, found {text:?}"
+                ))
+            })
     }
 
     /// Options that repeat this run to the byte, as a shell takes them.
@@ -277,22 +372,30 @@ mod tests {
     #[test]
     fn options_follow_sets_so_that_they_win() {
         let run = run(&["--samples", "64", "--set", "run.samples=32"]);
-        let values: Vec<String> = run.overrides().into_iter().map(|o| o.value).collect();
+        let values: Vec<String> = run
+            .computing
+            .overrides()
+            .into_iter()
+            .map(|o| o.value)
+            .collect();
         assert_eq!(values, ["32", "64"]);
     }
 
     #[test]
     fn a_set_value_may_hold_an_equals_sign() {
         let run = run(&["--set", "sensor.desk.grid={ counts = [2, 2] }"]);
-        assert_eq!(run.set[0].key, "sensor.desk.grid");
-        assert_eq!(run.set[0].value, "{ counts = [2, 2] }");
+        assert_eq!(run.computing.set[0].key, "sensor.desk.grid");
+        assert_eq!(run.computing.set[0].value, "{ counts = [2, 2] }");
         let words = ["malus", "run", "room.toml", "--set", "material.a"];
         assert!(Arguments::try_parse_from(words).is_err());
     }
 
     #[test]
     fn a_negative_number_is_a_value_to_be_judged_and_no_option() {
-        assert_eq!(run(&["--samples", "-5"]).samples.as_deref(), Some("-5"));
+        assert_eq!(
+            run(&["--samples", "-5"]).computing.samples.as_deref(),
+            Some("-5")
+        );
     }
 
     #[test]
@@ -309,7 +412,7 @@ mod tests {
             "--quiet",
         ]);
         assert_eq!(
-            run.repeating(4096),
+            run.computing.repeating(4096),
             "--samples 4096 --set 'material.\"Wall 1\".a=0' --model scalar"
         );
     }

@@ -2,16 +2,21 @@
 
 mod analyse;
 mod args;
+mod chart;
 mod check;
 mod colour;
+mod comparison;
+mod conclusion;
 mod contour;
 mod digest;
 mod failure;
 mod field;
+mod findings;
 mod frame;
 mod interrupt;
 mod label;
 mod number;
+mod outcome;
 mod output;
 mod overview;
 mod panel;
@@ -21,12 +26,16 @@ mod progress;
 mod rows;
 mod run;
 mod scale;
+mod sensitivity;
 mod stop;
 mod student;
 mod summary;
 mod svg;
+mod sweep;
 mod table;
 mod tick;
+mod trade;
+mod variants;
 
 use args::{Arguments, Command};
 use clap::Parser;
@@ -35,6 +44,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let end = match Arguments::parse().command {
         Command::Run(command) => run::run(&command),
+        Command::Sweep(command) => sweep::sweep(&command),
         Command::Analyse(command) => analyse::analyse(&command).map(|()| run::End::Complete),
         Command::Check(command) => check::check(&command).map(|()| run::End::Complete),
     };

@@ -65,6 +65,15 @@ impl Directory {
         written.with_context(|| format!("{}: cannot be written", path.display()))
     }
 
+    /// A file that grows piece by piece in its place, and holds what there is at any moment.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn growing(&self, name: &str) -> Result<File> {
+        let path = self.0.join(name);
+        File::create(&path).with_context(|| format!("{}: cannot be written", path.display()))
+    }
+
     /// A name of our own, so that two runs into one directory do not mix their bytes.
     fn temporary(&self, name: &str) -> PathBuf {
         self.0.join(format!(".{name}.{}.part", std::process::id()))

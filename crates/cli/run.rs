@@ -8,7 +8,7 @@ use crate::output::Directory;
 use crate::progress::Reporter;
 use crate::summary::Circumstances;
 use crate::{overview, picture, plan, rows, stop, summary};
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use malus_estimator::{Answer, Picture, Results};
 use malus_scene::{Camera, Scene, Settings};
 use std::io::Write;
@@ -29,17 +29,13 @@ pub enum End {
 /// # Errors
 /// Bad arguments, a bad scene, or a run that failed.
 pub fn run(command: &args::Run) -> Result<End, Failure> {
-    let threads = threads(command)?;
+    let threads = command.computing.threads()?;
     let scene = load(command)?;
     let mut settings = scene.settings.clone();
-    stop::narrow(&mut settings, &command.overrides());
+    stop::narrow(&mut settings, &command.computing.overrides());
     let directory = Directory::prepare(&directory(command)).map_err(Failure::run)?;
     warn(&scene.warnings);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .with_context(|| format!("cannot start {threads} threads"))
-        .map_err(Failure::run)?;
+    let pool = pool(threads).map_err(Failure::run)?;
     let interrupt = Interrupt::listen().map_err(Failure::run)?;
     let (results, seconds) = pool.install(|| compute(command, &scene, &settings, &interrupt));
     warn(&results.warnings);
@@ -60,7 +56,7 @@ pub fn run(command: &args::Run) -> Result<End, Failure> {
     let circumstances = Circumstances {
         seconds,
         threads,
-        repeat: command.repeating(results.samples),
+        repeat: command.computing.repeating(results.samples),
         warnings: [scene.warnings.as_slice(), &results.warnings].concat(),
     };
     let digests: Vec<Digest> = results.groups.iter().map(Digest::of).collect();
@@ -82,34 +78,18 @@ pub fn run(command: &args::Run) -> Result<End, Failure> {
     }
 }
 
-/// Loads the scene; errors name an option the way it was typed.
+/// Loads the scene.
 fn load(command: &args::Run) -> Result<Scene, Failure> {
-    Scene::load(&command.scene, &command.overrides()).map_err(|error| {
-        let mut text = error.to_string();
-        for entry in command.keys() {
-            let as_set = format!("--set {}={}", entry.key, entry.value);
-            text = text.replace(&as_set, &format!("--{} {}", entry.option, entry.value));
-        }
-        Failure::input(anyhow!(text))
-    })
+    Scene::load(&command.scene, &command.computing.overrides())
+        .map_err(|error| command.computing.refused(&error))
 }
 
-/// More threads than any machine has cores: beyond, starting them is all that a run would do.
-const MOST_THREADS: usize = 1024;
-
-/// Number of threads asked for, or as many as there are cores.
-fn threads(command: &args::Run) -> Result<usize, Failure> {
-    let Some(text) = &command.threads else {
-        return Ok(std::thread::available_parallelism().map_or(1, usize::from));
-    };
-    text.parse()
-        .ok()
-        .filter(|count| (1..=MOST_THREADS).contains(count))
-        .ok_or_else(|| {
-            Failure::input(anyhow!(
-                "--threads {text}: must be a whole number from 1 to {MOST_THREADS}, found {text:?}"
-            ))
-        })
+/// Threads to compute with.
+pub fn pool(threads: usize) -> anyhow::Result<rayon::ThreadPool> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .with_context(|| format!("cannot start {threads} threads"))
 }
 
 /// Where the results go.

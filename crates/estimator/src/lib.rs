@@ -32,7 +32,7 @@ mod trace;
 
 pub use picture::{Picture, picture};
 pub use results::{
-    Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Results, Shares, Stop,
+    Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Replicates, Results, Shares, Stop,
 };
 pub use run::run;
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};

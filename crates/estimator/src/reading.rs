@@ -2,7 +2,7 @@
 
 use crate::pass::Channels;
 use crate::receiver::Receiver;
-use crate::results::{Group, Paired, Reading, Shares};
+use crate::results::{Group, Paired, Reading, Replicates, Shares};
 use crate::statistics::{Estimate, Means, Tally, degree_of_linear_polarisation};
 use malus_scene::Scene;
 
@@ -138,12 +138,29 @@ impl<'a> Readings<'a> {
         // Points are walked from independently, so a mean over them has as many times the walks.
         let widened = |error| self.unmet.widened(error, count * walks(tally));
         let paired = |channel| Paired::new(tally, exact, channel, mean, widened);
+        let readings: Vec<Reading> = range.clone().map(|s| self.reading(tally, s)).collect();
+        let s0 = |sensor: usize| readings[sensor - range.start].stokes[0];
+        let darkest = free
+            .iter()
+            .copied()
+            .min_by(|&a, &b| s0(a).total_cmp(&s0(b)));
+        let at_darkest = |sensor: usize| {
+            let first = sensor * self.channels.count;
+            tally.values(|means| self.at(means, first) + self.exact[sensor][0])
+        };
+        let means = |channel| tally.values(|means| mean(means, channel) + exact);
+        let replicates = Replicates {
+            mean: means(0),
+            min: darkest.map_or_else(Vec::new, at_darkest),
+            scalar: self.channels.scalar.map_or_else(Vec::new, means),
+        };
         Group {
-            readings: range.map(|sensor| self.reading(tally, sensor)).collect(),
             mean: main.mean + exact,
             mean_standard_error: widened(main.standard_error),
             scalar: self.channels.scalar.map(paired),
             diffuse: self.channels.diffuse.map(paired),
+            replicates,
+            readings,
         }
     }
 

@@ -78,6 +78,20 @@ pub struct Group {
     pub scalar: Option<Paired>,
     /// Mean of the diffuse model over the free points, where asked for.
     pub diffuse: Option<Paired>,
+    /// What each replica gave.
+    pub replicates: Replicates,
+}
+
+/// What each replica of a run gave for a sensor group: runs of one seed and number of samples differ by the mean of the
+/// differences, with the standard error of those.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Replicates {
+    /// Mean of S0 over the free points, unit/m².
+    pub mean: Vec<f64>,
+    /// S0 at the free point that has the least of the whole run, unit/m².
+    pub min: Vec<f64>,
+    /// Mean of the scalar model's S0 over the free points, unit/m²; empty where it was not asked for.
+    pub scalar: Vec<f64>,
 }
 
 /// The irradiance Stokes vector at one sensor point, in unit/m².
