@@ -86,24 +86,41 @@ impl Beam {
         true
     }
 
-    /// Probability that a direction with density cos θ/π about the normal lies in the beam: Lambert's sum over the
-    /// edges of a polygon, (1/2π) Σ γ **N**·(**e** × **e**′)/|**e** × **e**′| with γ the angle between neighbours.
+    /// Probability that a direction with density cos θ/π about the normal lies in the beam.
     pub(crate) fn share(&self) -> f64 {
-        let Some(&(mut last)) = self.edges.last() else {
+        if self.edges.is_empty() {
             return 1.0;
-        };
-        let mut sum = 0.0;
-        for &edge in &self.edges {
-            let across = last.cross(edge);
-            let sine = across.length();
-            if sine > 0.0 {
-                let angle = libm::atan2(sine, last.dot(edge));
-                sum += angle * across.dot(self.normal) / sine;
-            }
-            last = edge;
         }
-        (sum.abs() / TAU).min(1.0)
+        share(&self.edges, self.normal)
     }
+}
+
+/// Form factor from a point with this unit normal to a flat convex polygon: the share of density cos θ/π that goes there,
+/// what lies below the horizon left out.
+pub(crate) fn form_factor(point: DVec3, normal: DVec3, corners: &[DVec3]) -> f64 {
+    let mut edges: Vec<DVec3> = corners.iter().map(|&c| c - point).collect();
+    clip(&mut edges, normal, 0.0);
+    drop_doubles(&mut edges);
+    share(&edges, normal)
+}
+
+/// Lambert's sum over the edges of a polygon, (1/2π) Σ γ **N**·(**e** × **e**′)/|**e** × **e**′| with γ the angle between
+/// neighbours.
+fn share(edges: &[DVec3], normal: DVec3) -> f64 {
+    let Some(&(mut last)) = edges.last() else {
+        return 0.0;
+    };
+    let mut sum = 0.0;
+    for &edge in edges {
+        let across = last.cross(edge);
+        let sine = across.length();
+        if sine > 0.0 {
+            let angle = libm::atan2(sine, last.dot(edge));
+            sum += angle * across.dot(normal) / sine;
+        }
+        last = edge;
+    }
+    (sum.abs() / TAU).min(1.0)
 }
 
 /// Sine² of the angle below which two edges are one: the plane between them would be noise.

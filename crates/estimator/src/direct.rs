@@ -152,6 +152,7 @@ fn follow<'a>(
         );
     }
     Effort {
+        joins: 0,
         rays,
         truncated: u64::from(walk.truncated),
     }

@@ -4,7 +4,7 @@ use crate::direction::{cosine_weighted, in_cone, on_disc};
 use crate::random::{Purpose, Uniforms};
 use crate::reading::Unmet;
 use glam::DVec3;
-use malus_geometry::Surfaces;
+use malus_geometry::{Facet, Facets, Surfaces};
 use malus_scene::{Distribution, Material, Scene, Source, SourceKind};
 use std::f64::consts::PI;
 
@@ -16,7 +16,12 @@ pub(crate) struct Emitters<'a> {
     triangles: Vec<u32>,
     /// Flux of the first i + 1 entries, triangles and then sources.
     cumulated: Vec<f64>,
+    /// Flat patches of triangles that emit unpolarised light and are hidden nowhere.
+    patches: Facets,
 }
+
+/// Patches that a sensor may see whole; the light of others is sampled.
+const MOST_PATCHES: usize = 64;
 
 /// Which part of the table a vertex looks at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,6 +44,8 @@ pub(crate) struct Site<'a> {
     pub state: State<'a>,
     /// One over the probability with which this emitter was chosen, per area where it is a surface.
     inverse: f64,
+    /// The flat patch of emitters that it belongs to, if it does.
+    pub patch: Option<u32>,
     shape: Shape<'a>,
 }
 
@@ -152,13 +159,40 @@ impl<'a> Emitters<'a> {
             total += source_flux(source, surfaces);
             cumulated.push(total);
         }
+        let even = |triangle: u32| {
+            let own = surfaces.triangle(triangle).area();
+            let material = &scene.materials[surfaces.surface(triangle) as usize];
+            emitted_state(material).is_none() && surfaces.exposed_area(triangle) >= own
+        };
+        let mut emits = vec![false; surfaces.len()];
+        for &triangle in &triangles {
+            emits[triangle as usize] = even(triangle);
+        }
+        let patches = Facets::new(surfaces, |t| emits[t as usize], 0.0, MOST_PATCHES);
         Self {
             surfaces,
             materials: &scene.materials,
             sources: &scene.sources,
             triangles,
             cumulated,
+            patches,
         }
+    }
+
+    /// Flat patches of triangles that emit unpolarised light and are hidden nowhere.
+    pub(crate) fn patches(&self) -> &[Facet] {
+        self.patches.list()
+    }
+
+    /// The patch that a triangle belongs to.
+    #[inline]
+    pub(crate) fn patch(&self, triangle: u32) -> Option<u32> {
+        self.patches.of(triangle)
+    }
+
+    /// The emitting triangles, in the order of the table.
+    pub(crate) fn triangles(&self) -> &[u32] {
+        &self.triangles
     }
 
     /// Flux of the part of the table, in unit, hidden parts of emitting triangles included.
@@ -254,6 +288,7 @@ impl<'a> Emitters<'a> {
             from: Some(position + normal * self.surfaces.offset()),
             state: emitted_state(material),
             inverse: total,
+            patch: self.patch(triangle),
             shape: Shape::Area {
                 normal,
                 density: exitance / total,
@@ -293,6 +328,7 @@ impl<'a> Emitters<'a> {
             from,
             state: state_of(&source.state, source.axis),
             inverse,
+            patch: None,
             shape,
         }
     }

@@ -1,5 +1,6 @@
 //! What a run works with: the walks it takes, and the sums they go to.
 
+use crate::allocation::Allocation;
 use crate::direct::{Cells, direct};
 use crate::gather::gather;
 use crate::local::local;
@@ -23,6 +24,8 @@ pub(crate) struct Engine<'a, const N: usize> {
     pub channels: Channels,
     /// The sensors.
     pub receivers: &'a [Receiver],
+    /// Walks from each sensor, relative to those from the emitters.
+    pub allocation: &'a Allocation,
     /// The cells in which `direct` counts, where that was asked for.
     pub cells: Option<&'a Cells>,
     /// Seed of all random numbers.
@@ -90,6 +93,7 @@ impl<const N: usize> Engine<'_, N> {
             &self.passes,
             &self.channels,
             self.receivers,
+            self.allocation,
             stream,
             replica.points..until,
             &mut replica.sums[self.length()..],
@@ -111,7 +115,7 @@ impl<const N: usize> Engine<'_, N> {
 
     fn advance_gather(&self, replica: &mut Replica, until: u64) -> Effort {
         let stream = Stream::new(self.seed, replica.id);
-        let range = replica.points..until;
+        let taken = replica.points;
         let efforts: Vec<Effort> = replica.sums[..self.length()]
             .par_chunks_mut(self.channels.count)
             .zip(self.receivers)
@@ -122,12 +126,14 @@ impl<const N: usize> Engine<'_, N> {
                     return Effort::default();
                 }
                 let stream = stream.branch(sensor as u64);
+                let walks = |launched| self.allocation.walks(sensor, launched);
                 gather::<N>(
                     &self.passes,
                     &self.channels,
                     receiver,
+                    self.allocation.launched(sensor),
                     stream,
-                    range.clone(),
+                    walks(taken)..walks(until),
                     sums,
                 )
             })

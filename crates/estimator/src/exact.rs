@@ -1,18 +1,27 @@
-//! The part of the answer that needs no chance: light straight from sources without geometry.
+//! The part of the answer that needs no chance: light straight from sources without geometry, and from the emitting
+//! surfaces that a sensor sees whole.
 
 use crate::evaluate::seen;
 use crate::medium::Medium;
 use crate::receiver::Receiver;
+use crate::sight::Sight;
 use glam::DVec3;
 
-/// Irradiance Stokes vector at each receiver from all point, spot and distant sources that it sees, in unit/m².
-pub(crate) fn from_sources<const N: usize>(
+/// Irradiance Stokes vector at each receiver from all point, spot and distant sources that it sees and from the surfaces in
+/// `sight`, in unit/m².
+pub(crate) fn straight<const N: usize>(
     medium: &Medium,
     receivers: &[Receiver],
+    sight: Option<&Sight>,
 ) -> Vec<[f64; N]> {
     receivers
         .iter()
-        .map(|receiver| from_sources_at(medium, receiver))
+        .enumerate()
+        .map(|(sensor, receiver)| {
+            let mut sum = from_sources_at(medium, receiver);
+            sum[0] += sight.map_or(0.0, |s| s.irradiance(sensor, medium.materials));
+            sum
+        })
         .collect()
 }
 

@@ -6,19 +6,24 @@ use crate::medium::Medium;
 use crate::pass::{Channels, Effort, Passes};
 use crate::random::{Stream, Uniforms};
 use crate::receiver::Receiver;
-use crate::trace::{Path, Walk};
+use crate::trace::{Path, Techniques, Walk};
 use std::ops::Range;
 
-/// Adds the walks `range` of one sensor to its sums.
+/// Adds the walks `range` of one sensor to its sums; for each of them so many are `launched` from the emitters.
 pub(crate) fn gather<const N: usize>(
     passes: &Passes,
     channels: &Channels,
     receiver: &Receiver,
+    launched: f64,
     stream: Stream,
     range: Range<u64>,
     sums: &mut [f64],
 ) -> Effort {
     let materials = passes.main.materials;
+    let techniques = Techniques {
+        local: launched * passes.techniques.local,
+        ..passes.techniques
+    };
     let mut effort = Effort::default();
     let mut path = Path::default();
     for index in range {
@@ -27,7 +32,7 @@ pub(crate) fn gather<const N: usize>(
         if let Some(channel) = channels.along {
             let mut scalar = Gathering::<1>::new(receiver);
             effort += follow(
-                passes,
+                techniques,
                 &passes.main,
                 receiver,
                 uniforms,
@@ -45,7 +50,7 @@ pub(crate) fn gather<const N: usize>(
             sums[channel] += scalar.sum()[0];
         } else {
             effort += follow(
-                passes,
+                techniques,
                 &passes.main,
                 receiver,
                 uniforms,
@@ -68,7 +73,7 @@ pub(crate) fn gather<const N: usize>(
         if let (Some(medium), Some(channel)) = (&passes.apart, channels.apart) {
             let mut apart = Gathering::<1>::new(receiver);
             effort += follow(
-                passes,
+                techniques,
                 medium,
                 receiver,
                 uniforms,
@@ -89,20 +94,15 @@ pub(crate) fn gather<const N: usize>(
 
 /// Takes a walk to its end, piece by piece; `evaluate` is given first what the sensor itself sees.
 pub(crate) fn follow<'a>(
-    passes: &Passes<'a>,
+    techniques: Techniques,
     medium: &Medium<'a>,
     receiver: &Receiver,
     uniforms: Uniforms,
     path: &mut Path<'a>,
     mut evaluate: impl FnMut(&Path<'a>, bool),
 ) -> Effort {
-    let Receiver { origin, normal, .. } = *receiver;
     path.clear();
-    let mut walk = if receiver.is_irradiance() {
-        Walk::from_sensor(*medium, passes.techniques, uniforms, origin, normal)
-    } else {
-        Walk::along_sight(*medium, passes.techniques, uniforms, origin, normal)
-    };
+    let mut walk = Walk::from_sensor(*medium, techniques, uniforms, receiver);
     walk.look(path);
     let mut rays = 1;
     evaluate(path, true);
@@ -115,6 +115,7 @@ pub(crate) fn follow<'a>(
         if !more {
             return Effort {
                 rays,
+                joins: 0,
                 truncated: u64::from(walk.truncated),
             };
         }

@@ -4,6 +4,7 @@
 //! state of light) and evaluated afterwards for 1, 3 or 4 Stokes components and for several models at
 //! once. The crate reads no files, prints nothing and knows no clock.
 
+mod allocation;
 mod beam;
 mod choose;
 mod direct;
@@ -27,6 +28,7 @@ mod reading;
 mod receiver;
 mod results;
 mod run;
+mod sight;
 mod statistics;
 mod trace;
 

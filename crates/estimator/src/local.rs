@@ -1,5 +1,6 @@
 //! The paper's estimator (eqs. 19–21): walks from the emitters, and at every vertex a local estimate to every sensor.
 
+use crate::allocation::Allocation;
 use crate::emitters::Start;
 use crate::evaluate::{Carrying, joined, sent};
 use crate::medium::{Medium, Step};
@@ -18,6 +19,7 @@ pub(crate) fn local<'a, const N: usize>(
     passes: &Passes<'a>,
     channels: &Channels,
     receivers: &[Receiver],
+    allocation: &Allocation,
     stream: Stream,
     range: Range<u64>,
     sums: &mut [f64],
@@ -36,6 +38,7 @@ pub(crate) fn local<'a, const N: usize>(
         let joining = Joining {
             techniques: passes.techniques,
             receivers,
+            allocation,
             uniforms,
         };
         let mut main = Carrying::<N>::new(&start);
@@ -120,8 +123,8 @@ fn emit<const N: usize>(
         }
     }
     Effort {
-        rays: receivers.len() as u64,
-        truncated: 0,
+        joins: receivers.len() as u64,
+        ..Effort::default()
     }
 }
 
@@ -130,6 +133,7 @@ fn emit<const N: usize>(
 struct Joining<'r> {
     techniques: Techniques,
     receivers: &'r [Receiver],
+    allocation: &'r Allocation,
     uniforms: Uniforms,
 }
 
@@ -170,7 +174,7 @@ impl Joining<'_> {
             for (vertex, flux) in path.vertices.iter().zip(&fluxes) {
                 depth += 1;
                 if flux.iter().any(|&f| f > 0.0) {
-                    effort.rays += self.receivers.len() as u64;
+                    effort.joins += self.receivers.len() as u64;
                     self.join(&medium, vertex, depth, |sensor, weight, light, scalar| {
                         add(sensor, flux.map(|f| f * weight), light, scalar);
                     });
@@ -221,9 +225,10 @@ impl Joining<'_> {
                         even
                     };
                     let coupling = way.coupling * way.odds;
-                    weight *= vertex
-                        .rival
-                        .weight(coupling, diffuse, self.techniques.local);
+                    weight *=
+                        vertex
+                            .rival
+                            .weight(coupling, diffuse, self.allocation.launched(sensor));
                 }
                 let (light, scalar) = read(receiver, &way, &steps);
                 add(sensor, weight, light, scalar);

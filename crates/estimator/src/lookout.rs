@@ -3,6 +3,8 @@
 use crate::emitters::Choice;
 use crate::medium::Medium;
 use crate::mirrors::Viewer;
+use crate::receiver::Receiver;
+use crate::sight::Seen;
 use crate::trace::Techniques;
 use glam::DVec3;
 use malus_geometry::Hit;
@@ -68,6 +70,8 @@ pub(crate) struct Lookout {
     pub choice: Choice,
     /// True where it could not: a sensor of radiance.
     pub alone: bool,
+    /// For a sensor: what it need not look for straight.
+    pub seen: Seen,
     /// Mirrors and panes passed since.
     pub chain: Passed,
     /// Probability with which the walk went on from there into a random direction.
@@ -81,12 +85,18 @@ pub(crate) struct Lookout {
 }
 
 impl Lookout {
-    /// A sensor of irradiance.
-    pub(crate) fn of_sensor(viewer: Viewer, direction: DVec3, choice: Choice) -> Self {
+    /// A sensor of irradiance, with the direction of the walk.
+    pub(crate) fn of_sensor(receiver: &Receiver, direction: DVec3, choice: Choice) -> Self {
+        let viewer = Viewer {
+            point: receiver.origin,
+            normal: receiver.normal,
+            sensor: true,
+        };
         Self {
             viewer,
             choice,
             alone: false,
+            seen: receiver.seen,
             chain: Passed::nothing(),
             diffuse: 1.0,
             cos: viewer.normal.dot(direction),
@@ -96,15 +106,10 @@ impl Lookout {
     }
 
     /// A sensor of radiance: nothing but the walk itself can find what arrives from its direction.
-    pub(crate) fn along(origin: DVec3, direction: DVec3) -> Self {
-        let viewer = Viewer {
-            point: origin,
-            normal: direction,
-            sensor: true,
-        };
+    pub(crate) fn along(receiver: &Receiver) -> Self {
         Self {
             alone: true,
-            ..Self::of_sensor(viewer, direction, Choice::Areas)
+            ..Self::of_sensor(receiver, receiver.normal, Choice::Areas)
         }
     }
 
@@ -161,6 +166,12 @@ impl Lookout {
     ) -> f64 {
         if self.alone {
             return 1.0;
+        }
+        if self.sensor
+            && self.chain.is_straight()
+            && self.seen.holds(medium.emitters.patch(hit.triangle))
+        {
+            return 0.0;
         }
         let probability = match self.chain.facets() {
             Some([]) => 1.0,

@@ -38,12 +38,9 @@ impl Channels {
         let mirrors = has_mirrors(&scene.materials);
         let mut channels = Self {
             components,
-            scalar: None,
-            diffuse: None,
-            along: None,
-            apart: None,
             found: components,
             count: components + 2,
+            ..Self::of_intensity()
         };
         if settings.compare_scalar {
             channels.scalar = Some(match settings.model {
@@ -59,6 +56,19 @@ impl Channels {
             });
         }
         channels
+    }
+
+    /// The sums of S0 alone.
+    pub(crate) fn of_intensity() -> Self {
+        Self {
+            components: 1,
+            scalar: None,
+            diffuse: None,
+            along: None,
+            apart: None,
+            found: 1,
+            count: 3,
+        }
     }
 
     fn open(&mut self, apart: bool) -> usize {
@@ -146,8 +156,10 @@ impl<'a> Passes<'a> {
 /// What walks have cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Effort {
-    /// Rays asked of the geometry.
+    /// Rays asked of the geometry, those of joins left out.
     pub rays: u64,
+    /// Vertices joined to sensors.
+    pub joins: u64,
     /// Walks cut off at their greatest length.
     pub truncated: u64,
 }
@@ -155,6 +167,7 @@ pub(crate) struct Effort {
 impl AddAssign for Effort {
     fn add_assign(&mut self, other: Self) {
         self.rays += other.rays;
+        self.joins += other.joins;
         self.truncated += other.truncated;
     }
 }

@@ -129,7 +129,7 @@ fn pixel<const N: usize>(
         let receiver = Receiver::of_radiance(camera.position, direction, camera.right);
         let mut gathering = Gathering::<N>::new(&receiver);
         follow(
-            passes,
+            passes.techniques,
             &passes.main,
             &receiver,
             uniforms,

@@ -1,9 +1,10 @@
 //! From tallies to readings: means with their errors, and what pairs of models say together.
 
+use crate::allocation::Allocation;
 use crate::pass::Channels;
 use crate::receiver::Receiver;
 use crate::results::{Group, Paired, Reading, Replicates, Shares};
-use crate::statistics::{Estimate, Means, Tally, degree_of_linear_polarisation};
+use crate::statistics::{Estimate, Means, Replica, Tally, degree_of_linear_polarisation};
 use malus_scene::Scene;
 
 /// How the sums of a run are read.
@@ -11,6 +12,7 @@ pub(crate) struct Readings<'a> {
     scene: &'a Scene,
     channels: Channels,
     receivers: &'a [Receiver],
+    allocation: &'a Allocation,
     /// What is known without chance, one Stokes vector a sensor; S0 is the same in every model.
     exact: Vec<[f64; 4]>,
     unmet: Unmet,
@@ -44,6 +46,7 @@ impl<'a> Readings<'a> {
         scene: &'a Scene,
         channels: Channels,
         receivers: &'a [Receiver],
+        allocation: &'a Allocation,
         exact: &[[f64; N]],
         unmet: Unmet,
     ) -> Self {
@@ -54,43 +57,74 @@ impl<'a> Readings<'a> {
             scene,
             channels,
             receivers,
+            allocation,
             exact: exact.iter().map(padded).collect(),
             unmet,
         }
     }
 
-    /// A sum a walk, of both kinds of walk together.
-    fn at(&self, means: &Means, index: usize) -> f64 {
-        means.at(index) + means.at(self.receivers.len() * self.channels.count + index)
+    /// What walks from a sensor and walks from the emitters bring it, on average.
+    fn parts(&self, means: &Means, sensor: usize, channel: usize) -> [f64; 2] {
+        let index = sensor * self.channels.count + channel;
+        let walks = self.allocation.walks(sensor, means.points());
+        let half = self.receivers.len() * self.channels.count;
+        [means.over(index, walks), means.at(half + index)]
+    }
+
+    /// Both together.
+    fn at(&self, means: &Means, sensor: usize, channel: usize) -> f64 {
+        let [gathered, launched] = self.parts(means, sensor, channel);
+        gathered + launched
+    }
+
+    /// Walks taken at a sensor by all replicas together.
+    fn walks(&self, tally: &Tally, sensor: usize) -> f64 {
+        let walks = |replica: &Replica| self.allocation.walks(sensor, replica.points);
+        tally.replicas().map(walks).sum::<u64>() as f64
     }
 
     /// What each way of finding light has brought of S0, as shares of its sum over the free sensors.
     #[must_use]
     pub(crate) fn shares(&self, tally: &Tally) -> Shares {
         let mut shares = Shares::default();
-        let count = self.channels.count;
-        let half = self.receivers.len() * count;
         for sensor in 0..self.receivers.len() {
             if self.receivers[sensor].enclosed {
                 continue;
             }
-            let first = sensor * count;
-            let mean = |index: usize| tally.estimate(|means| means.at(index)).mean;
-            let [mirrored, met] = [0, 1].map(|part| mean(first + self.channels.found + part));
+            if std::env::var("DBG").is_ok() && sensor % 9 == 0 {
+                let p = |k: usize| tally.estimate(|m: &Means| self.parts(m, sensor, 0)[k]);
+                let (g, l) = (p(0), p(1));
+                let e = self.exact[sensor][0];
+                let s0 = g.mean + l.mean + e;
+                eprintln!(
+                    "DBG sensor {sensor} q {:.3} exact {:.3} gather {:.4} +- {:.5} local {:.4} +- {:.5}",
+                    1.0 / self.allocation.launched(sensor),
+                    e / s0,
+                    g.mean / s0,
+                    g.standard_error / s0,
+                    l.mean / s0,
+                    l.standard_error / s0
+                );
+            }
+            let part = |channel: usize, kind: usize| {
+                let read = |means: &Means| self.parts(means, sensor, channel)[kind];
+                tally.estimate(read).mean
+            };
+            let [mirrored, met] = [0, 1].map(|found| part(self.channels.found + found, 0));
             shares.exact += self.exact[sensor][0];
-            shares.looked += mean(first) - mirrored - met;
+            shares.looked += part(0, 0) - mirrored - met;
             shares.mirrored += mirrored;
             shares.met += met;
-            shares.local += mean(half + first);
+            shares.local += part(0, 1);
         }
         shares.normalised()
     }
 
     fn s0(&self, tally: &Tally, sensor: usize) -> Estimate {
-        let index = sensor * self.channels.count;
-        let mut estimate = tally.estimate(|means| self.at(means, index));
+        let mut estimate = tally.estimate(|means| self.at(means, sensor, 0));
         estimate.mean += self.exact[sensor][0];
-        estimate.standard_error = self.unmet.widened(estimate.standard_error, walks(tally));
+        let walks = self.walks(tally, sensor);
+        estimate.standard_error = self.unmet.widened(estimate.standard_error, walks);
         estimate
     }
 
@@ -130,13 +164,14 @@ impl<'a> Readings<'a> {
             .collect();
         let count = free.len().max(1) as f64;
         let mean = |means: &Means, channel: usize| {
-            let at = |&sensor: &usize| self.at(means, sensor * self.channels.count + channel);
+            let at = |&sensor: &usize| self.at(means, sensor, channel);
             free.iter().map(at).sum::<f64>() / count
         };
         let exact = free.iter().map(|&s| self.exact[s][0]).sum::<f64>() / count;
         let main = tally.estimate(|means| mean(means, 0));
         // Points are walked from independently, so a mean over them has as many times the walks.
-        let widened = |error| self.unmet.widened(error, count * walks(tally));
+        let walks: f64 = free.iter().map(|&s| self.walks(tally, s)).sum();
+        let widened = |error| self.unmet.widened(error, walks.max(1.0));
         let paired = |channel| Paired::new(tally, exact, channel, mean, widened);
         let readings: Vec<Reading> = range.clone().map(|s| self.reading(tally, s)).collect();
         let s0 = |sensor: usize| readings[sensor - range.start].stokes[0];
@@ -144,10 +179,8 @@ impl<'a> Readings<'a> {
             .iter()
             .copied()
             .min_by(|&a, &b| s0(a).total_cmp(&s0(b)));
-        let at_darkest = |sensor: usize| {
-            let first = sensor * self.channels.count;
-            tally.values(|means| self.at(means, first) + self.exact[sensor][0])
-        };
+        let at_darkest =
+            |sensor: usize| tally.values(|means| self.at(means, sensor, 0) + self.exact[sensor][0]);
         let means = |channel| tally.values(|means| mean(means, channel) + exact);
         let replicates = Replicates {
             mean: means(0),
@@ -165,24 +198,23 @@ impl<'a> Readings<'a> {
     }
 
     fn reading(&self, tally: &Tally, sensor: usize) -> Reading {
-        let first = sensor * self.channels.count;
         let enclosed = self.receivers[sensor].enclosed;
+        let walks = self.walks(tally, sensor);
         let widened = |error| match enclosed {
             true => error,
-            false => self.unmet.widened(error, walks(tally)),
+            false => self.unmet.widened(error, walks),
         };
         let mut stokes = self.exact[sensor];
         let mut standard_error = [0.0; 4];
         for component in 0..self.channels.components {
-            let estimate = tally.estimate(|means| self.at(means, first + component));
+            let estimate = tally.estimate(|means| self.at(means, sensor, component));
             stokes[component] += estimate.mean;
             standard_error[component] = widened(estimate.standard_error);
         }
         let dolp = if self.channels.components > 1 {
             degree_of_linear_polarisation(stokes, |[c0, c1, c2]| {
-                tally.estimate(|m| {
-                    c0 * self.at(m, first) + c1 * self.at(m, first + 1) + c2 * self.at(m, first + 2)
-                })
+                let at = |means: &Means, channel| self.at(means, sensor, channel);
+                tally.estimate(|m| c0 * at(m, 0) + c1 * at(m, 1) + c2 * at(m, 2))
             })
         } else {
             Estimate {
@@ -190,7 +222,7 @@ impl<'a> Readings<'a> {
                 standard_error: 0.0,
             }
         };
-        let at = |means: &Means, channel: usize| self.at(means, first + channel);
+        let at = |means: &Means, channel: usize| self.at(means, sensor, channel);
         let exact = self.exact[sensor][0];
         let paired = |channel| Paired::new(tally, exact, channel, at, widened);
         Reading {
@@ -232,11 +264,6 @@ impl Paired {
             },
         }
     }
-}
-
-/// Walks taken at each sensor by all replicas together.
-fn walks(tally: &Tally) -> f64 {
-    tally.replicas().map(|replica| replica.points).sum::<u64>() as f64
 }
 
 #[cfg(test)]

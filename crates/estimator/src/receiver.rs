@@ -1,5 +1,6 @@
 //! Sensor points as walks meet them: free of the surface they lie on, with the basis of their Stokes vector.
 
+use crate::sight::Seen;
 use glam::DVec3;
 use malus_geometry::Surfaces;
 use malus_optics::{Basis, Sensor as SensorRole};
@@ -17,6 +18,8 @@ pub(crate) struct Receiver {
     pub enclosed: bool,
     /// What a surface of unit exitance that fills the view gives: 1 as irradiance, 1/π as radiance.
     pub per_exitance: f64,
+    /// Emitters whose light is known where it comes straight: nothing samples it.
+    pub seen: Seen,
     frame: Frame,
     axis: DVec3,
 }
@@ -45,6 +48,7 @@ impl Receiver {
                 Quantity::Irradiance => 1.0,
                 Quantity::Radiance => FRAC_1_PI,
             },
+            seen: Seen::default(),
             frame: match sensor.quantity {
                 Quantity::Irradiance => sensor.frame,
                 Quantity::Radiance => Frame::Fixed,
@@ -60,6 +64,7 @@ impl Receiver {
             normal: direction,
             enclosed: false,
             per_exitance: FRAC_1_PI,
+            seen: Seen::default(),
             frame: Frame::Fixed,
             axis,
         }

@@ -1,5 +1,6 @@
 //! A run: replicas taken further in steps until a stopping rule holds.
 
+use crate::allocation::Allocation;
 use crate::choose::{blind_spots, erratic, techniques};
 use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
@@ -11,6 +12,7 @@ use crate::pass::{Channels, Modelled, Passes, has_mirrors};
 use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
 use crate::results::{Answer, Progress, Results, Stop};
+use crate::sight::Sight;
 use crate::statistics::REPLICAS;
 use crate::trace::LONGEST;
 use malus_optics::Representation;
@@ -62,7 +64,7 @@ fn run_with<const N: usize>(
 ) -> Results {
     let channels = Channels::new(scene, settings, representation);
     let emitters = Emitters::new(scene);
-    let receivers = Receiver::all(scene);
+    let mut receivers = Receiver::all(scene);
     let (techniques, estimator_reason) = techniques(settings.estimator, &receivers);
     let main = Modelled::new(scene, settings.model);
     let apart = channels.apart.map(|_| match settings.model {
@@ -78,24 +80,34 @@ fn run_with<const N: usize>(
         let side = settings.cell.unwrap_or(direct::SIDE);
         Cells::new(&scene.surfaces, &receivers, side)
     });
+    let sight = techniques
+        .gather
+        .then(|| Sight::new(&scene.surfaces, &emitters, &mut receivers));
+    let exact = match cells {
+        // Counted like all other light.
+        Some(_) => vec![[0.0; N]; receivers.len()],
+        None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref()),
+    };
+    let allocation = if techniques.gather && techniques.local > 0.0 {
+        let exact = |sensor: usize| exact[sensor][0];
+        Allocation::piloted(&passes, &receivers, exact, settings.seed)
+    } else {
+        Allocation::even(receivers.len())
+    };
     let engine = Engine::<N> {
         passes,
         channels,
         receivers: &receivers,
+        allocation: &allocation,
         cells: cells.as_ref(),
         seed: settings.seed,
-    };
-    let exact = match cells {
-        // Counted like all other light.
-        Some(_) => vec![[0.0; N]; receivers.len()],
-        None => exact::from_sources::<N>(&passes.main, &receivers),
     };
     let unmet = match &cells {
         Some(cells) => direct::unmet(&passes.main, cells),
         None if techniques.gather => unmet(&passes, &emitters),
         None => Unmet::default(),
     };
-    let readings = Readings::new(scene, channels, &receivers, &exact, unmet);
+    let readings = Readings::new(scene, channels, &receivers, &allocation, &exact, unmet);
 
     let mut tally = engine.tally();
     let mut taken = 0;
@@ -187,6 +199,9 @@ fn unmet(passes: &Passes, emitters: &Emitters) -> Unmet {
         }
     };
     let share = passes.media().map(share).fold(0.0, f64::max);
+    if std::env::var("DBG").is_ok() {
+        eprintln!("DBG share {share} {:?}", emitters.unmet());
+    }
     let unmet = emitters.unmet();
     if share > 0.0 {
         // The most that there can be of it is what such mirrors can send on.

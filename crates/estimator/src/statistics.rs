@@ -32,10 +32,6 @@ impl Replica {
             truncated: 0,
         }
     }
-
-    fn mean(&self, index: usize) -> f64 {
-        self.sums[index] / self.points as f64
-    }
 }
 
 /// Why two tallies cannot be joined.
@@ -160,10 +156,22 @@ impl Estimate {
 pub struct Means<'a>(&'a Replica);
 
 impl Means<'_> {
-    /// Mean of the sum at `index`.
+    /// Mean of the sum at `index` over all walks.
     #[must_use]
     pub fn at(&self, index: usize) -> f64 {
-        self.0.mean(index)
+        self.over(index, self.points())
+    }
+
+    /// Mean of the sum at `index` over so many walks.
+    #[must_use]
+    pub fn over(&self, index: usize, walks: u64) -> f64 {
+        self.0.sums[index] / walks as f64
+    }
+
+    /// Walks summed.
+    #[must_use]
+    pub fn points(&self) -> u64 {
+        self.0.points
     }
 }
 

@@ -11,6 +11,8 @@ use crate::lookout::Lookout;
 use crate::medium::{Medium, Meeting, Step, target};
 use crate::mirrors::Viewer;
 use crate::random::{Purpose, Uniforms};
+use crate::receiver::Receiver;
+use crate::sight::Seen;
 use glam::DVec3;
 use malus_geometry::Hit;
 use malus_optics::Reflection;
@@ -162,26 +164,26 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// A walk from a sensor, against the light, with density cos θ/π.
+    /// A walk from a sensor, against the light: with density cos θ/π, or where its sensor looks.
     pub(crate) fn from_sensor(
         medium: Medium<'a>,
         techniques: Techniques,
         uniforms: Uniforms,
-        origin: DVec3,
-        normal: DVec3,
+        receiver: &Receiver,
     ) -> Self {
-        let [_, u, v, _] = uniforms.at(0, Purpose::Scatter);
-        let direction = cosine_weighted(normal, [u, v]);
-        let viewer = Viewer {
-            point: origin,
-            normal,
-            sensor: true,
-        };
-        // Light straight from sources without geometry is summed exactly, but in mirrors it is looked for.
-        let choice = if techniques.mirrored && !medium.mirrors.is_empty() {
-            Choice::All
+        let Receiver { origin, normal, .. } = *receiver;
+        let (direction, lookout) = if receiver.is_irradiance() {
+            let [_, u, v, _] = uniforms.at(0, Purpose::Scatter);
+            let direction = cosine_weighted(normal, [u, v]);
+            // Light straight from sources without geometry is summed exactly, but in mirrors it is looked for.
+            let choice = if techniques.mirrored && !medium.mirrors.is_empty() {
+                Choice::All
+            } else {
+                Choice::Areas
+            };
+            (direction, Lookout::of_sensor(receiver, direction, choice))
         } else {
-            Choice::Areas
+            (normal, Lookout::along(receiver))
         };
         Self {
             medium,
@@ -190,27 +192,7 @@ impl<'a> Walk<'a> {
             origin,
             direction,
             depth: 0,
-            role: Role::Looking(Lookout::of_sensor(viewer, direction, choice)),
-            truncated: false,
-        }
-    }
-
-    /// A walk from a point against the light that arrives from one direction.
-    pub(crate) fn along_sight(
-        medium: Medium<'a>,
-        techniques: Techniques,
-        uniforms: Uniforms,
-        origin: DVec3,
-        direction: DVec3,
-    ) -> Self {
-        Self {
-            medium,
-            techniques,
-            uniforms,
-            origin,
-            direction,
-            depth: 0,
-            role: Role::Looking(Lookout::along(origin, direction)),
+            role: Role::Looking(lookout),
             truncated: false,
         }
     }
@@ -219,8 +201,15 @@ impl<'a> Walk<'a> {
     pub(crate) fn look(&self, path: &mut Path<'a>) {
         if let Role::Looking(lookout) = &self.role
             && !lookout.alone
+            && !(lookout.seen.everything() && lookout.choice == Choice::Areas)
         {
-            self.connect(path, lookout.viewer, lookout.choice, 1.0, &|_| 0.0);
+            let look = Look {
+                viewer: lookout.viewer,
+                choice: lookout.choice,
+                known: lookout.seen,
+                diffuse: 1.0,
+            };
+            self.connect(path, &look, &|_| 0.0);
         }
     }
 
@@ -346,7 +335,13 @@ impl<'a> Walk<'a> {
                 let cos = meeting.angle.0;
                 let local = self.techniques.local;
                 let coupling = |toward: DVec3| lookout.coupling(cos, bound(meeting, toward), local);
-                self.connect(path, viewer, Choice::All, diffuse, &coupling);
+                let look = Look {
+                    viewer,
+                    choice: Choice::All,
+                    known: Seen::default(),
+                    diffuse,
+                };
+                self.connect(path, &look, &coupling);
                 vertex.connections = first..path.connections.len();
             }
         }
@@ -371,16 +366,14 @@ impl<'a> Walk<'a> {
 
     /// Appends what a point sees of one emitter, straight and in mirrors, weighted against other techniques.
     ///
-    /// `diffuse` is the probability with which the walk goes on from there into a random direction, and `coupling` what
-    /// [`Lookout::coupling`] says of it.
-    fn connect(
-        &self,
-        path: &mut Path<'a>,
-        viewer: Viewer,
-        choice: Choice,
-        diffuse: f64,
-        coupling: &dyn Fn(DVec3) -> f64,
-    ) {
+    /// `coupling` is what [`Lookout::coupling`] says of the point.
+    fn connect(&self, path: &mut Path<'a>, look: &Look, coupling: &dyn Fn(DVec3) -> f64) {
+        let Look {
+            viewer,
+            choice,
+            known,
+            diffuse,
+        } = *look;
         let Medium {
             emitters, mirrors, ..
         } = self.medium;
@@ -413,7 +406,7 @@ impl<'a> Walk<'a> {
             .map_or(-site.direction(), |from| from - viewer.point);
         let square = span.length_squared();
         let toward = span / square.sqrt();
-        let direct = !viewer.sensor || area_density.is_some();
+        let direct = !viewer.sensor || area_density.is_some() && !known.holds(site.patch);
         // A point at the source itself has no direction to it.
         if direct
             && toward.dot(viewer.normal) > 0.0
@@ -470,6 +463,16 @@ impl<'a> Walk<'a> {
             },
         );
     }
+}
+
+/// Who looks for an emitter, and for which.
+struct Look {
+    viewer: Viewer,
+    choice: Choice,
+    /// What is not looked for straight.
+    known: Seen,
+    /// Probability with which the walk goes on from there into a random direction.
+    diffuse: f64,
 }
 
 /// Probability with which a walk that came from `direction` would be scattered where this one was met.

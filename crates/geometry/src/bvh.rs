@@ -244,6 +244,37 @@ impl Tree {
     }
 }
 
+impl Tree {
+    /// Whether every triangle `passes` that lies in boxes which `enters`, given two corners of a box in m, lets in.
+    pub fn all(&self, enters: impl Fn(DVec3, DVec3) -> bool, passes: impl Fn(u32) -> bool) -> bool {
+        let Frame { centre, scale, .. } = self.frame;
+        let world = |corner: Vec3A| corner.as_dvec3() / scale + centre;
+        let mut open = vec![0];
+        while let Some(index) = open.pop() {
+            let Some(node) = self.bvh.nodes.get(index) else {
+                continue;
+            };
+            let bounds = node.aabb();
+            if !enters(world(bounds.min), world(bounds.max)) {
+                continue;
+            }
+            let first = node.first_index as usize;
+            if node.is_leaf() {
+                let leaves = first..first + node.prim_count as usize;
+                if !self.bvh.primitive_indices[leaves]
+                    .iter()
+                    .all(|&t| passes(t))
+                {
+                    return false;
+                }
+            } else {
+                open.extend([first, first + 1]);
+            }
+        }
+        true
+    }
+}
+
 /// The preset `medium`: better traversal than the fast ones, and the slow ones gain little more.
 fn built(mesh: &Mesh, frame: Frame) -> Bvh2 {
     let preset = BvhBuildParams::medium_build();

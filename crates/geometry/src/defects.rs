@@ -113,7 +113,7 @@ pub fn of(mesh: &Mesh) -> Report {
         sound[index as usize] = false;
     }
     let sound = |triangle: u32| sound[triangle as usize];
-    let welded = weld(mesh, tolerance);
+    let welded = weld(mesh, &mesh.triangles, tolerance);
     let solids = Solids::among(mesh, &welded, tolerance, sound);
     let inside_out = solids.iter().filter(|solid| solid.volume() < 0.0);
     let all = edges::uses(mesh, &welded, sound, |_| 0);

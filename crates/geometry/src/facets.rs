@@ -156,7 +156,12 @@ struct Neighbours {
 
 impl Neighbours {
     fn new(surfaces: &Surfaces, triangles: &[u32]) -> Self {
-        let welded = weld(surfaces.mesh(), surfaces.tolerance());
+        let mesh = surfaces.mesh();
+        let used: Vec<[u32; 3]> = triangles
+            .iter()
+            .map(|&triangle| mesh.triangles[triangle as usize])
+            .collect();
+        let welded = weld(mesh, &used, surfaces.tolerance());
         let mut found = Self {
             edges: Vec::with_capacity(3 * triangles.len()),
             welded,

@@ -39,6 +39,7 @@ mod facets;
 mod holes;
 mod mesh;
 mod polygon;
+mod pyramid;
 mod surfaces;
 #[cfg(test)]
 mod testing;

@@ -41,9 +41,12 @@ impl<'a> Solids<'a> {
             dropped[index as usize] = true;
         }
         let tolerance = tolerance(centre, radius);
-        Self::among(mesh, &weld(mesh, tolerance), tolerance, |triangle| {
-            !dropped[triangle as usize]
-        })
+        Self::among(
+            mesh,
+            &weld(mesh, &mesh.triangles, tolerance),
+            tolerance,
+            |triangle| !dropped[triangle as usize],
+        )
     }
 
     /// The same among some of the triangles, with vertices welded already.

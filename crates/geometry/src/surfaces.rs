@@ -168,7 +168,17 @@ impl Surfaces {
     /// self-hit in closed spheres and boxes of side 10⁻³ to 10⁴ m, at the origin or 10⁴ m from it.
     #[must_use]
     pub fn offset(&self) -> f64 {
-        4.0 * clean::slack(self.centre, self.radius)
+        4.0 * self.slack()
+    }
+
+    /// How thick surfaces are for rays, in m.
+    pub(crate) fn slack(&self) -> f64 {
+        clean::slack(self.centre, self.radius)
+    }
+
+    /// The tree of boxes.
+    pub(crate) fn tree(&self) -> &Tree {
+        &self.tree
     }
 
     /// Distance in m within which things lie in one place: 8 ε (|centre| + radius), ε that of single precision, in which

@@ -3,11 +3,12 @@
 use crate::Mesh;
 use std::collections::HashMap;
 
-/// For each position of a mesh the first used one within `tolerance` (in m) of it; unused ones stand for themselves.
-pub(crate) fn weld(mesh: &Mesh, tolerance: f64) -> Vec<u32> {
+/// For each position of a mesh the first one within `tolerance` (in m) of it that these triangles use; what they do not
+/// use stands for itself.
+pub(crate) fn weld(mesh: &Mesh, triangles: &[[u32; 3]], tolerance: f64) -> Vec<u32> {
     let size = (4.0 * tolerance).max(f64::MIN_POSITIVE);
     let mut used = vec![false; mesh.positions.len()];
-    for &vertex in mesh.triangles.iter().flatten() {
+    for &vertex in triangles.iter().flatten() {
         used[vertex as usize] = true;
     }
     let mut welded: Vec<u32> = (0..).take(mesh.positions.len()).collect();
@@ -78,11 +79,11 @@ mod tests {
         let triangles: Vec<[u32; 3]> = (0..100).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
         mesh.append(&places, &triangles, 0, 0);
         mesh.append(&moved, &triangles, 0, 1);
-        let welded = weld(&mesh, 1e-4);
+        let welded = weld(&mesh, &mesh.triangles, 1e-4);
         for index in 0..300 {
             assert_eq!(welded[index as usize], index);
             assert_eq!(welded[300 + index as usize], index);
         }
-        assert_eq!(weld(&mesh, 1e-5)[300], 300);
+        assert_eq!(weld(&mesh, &mesh.triangles, 1e-5)[300], 300);
     }
 }

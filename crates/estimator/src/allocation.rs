@@ -1,0 +1,268 @@
+//! How many walks each sensor takes for one walk from the emitters.
+//!
+//! A walk from the emitters serves all sensors at once, and sees little of what lies close to one; a walk from a sensor is
+//! dear, and does as well beside a wall as in the open. A few walks of either kind, thrown away afterwards, tell how much
+//! each of them errs at every sensor. The shares are then those that bring all sensors to one relative error at the least
+//! cost; as they depend on scene and seed alone, the sums of a run do not depend on when it stops.
+
+use crate::gather::gather;
+use crate::local::local;
+use crate::pass::{Channels, Effort, Passes};
+use crate::random::Stream;
+use crate::receiver::Receiver;
+use crate::statistics::REPLICAS;
+use rayon::prelude::*;
+
+/// A sensor's share of walks is a multiple of one over this.
+const PARTS: u32 = 64;
+
+/// Greatest share, in parts: eight walks from the sensor for one from the emitters.
+const MOST: u32 = 8 * PARTS;
+
+/// Share with which the pilot weighs the two kinds of walk against each other, in parts.
+const TRIED: u32 = PARTS / 8;
+
+/// Rounds of the pilot, and the walks from the emitters and from each sensor in one round.
+const ROUNDS: u32 = 16;
+const LAUNCHED: u64 = 8;
+const GATHERED: u64 = 2;
+
+/// Cost of a ray, of joining a vertex to a sensor, and of looking into mirrors from a vertex, relative to each other.
+const RAY: f64 = 1.0;
+const JOIN: f64 = 0.2;
+const LOOK: f64 = 4.0;
+
+/// Walks from each sensor, relative to those from the emitters.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Allocation {
+    parts: Vec<u32>,
+}
+
+impl Allocation {
+    /// As many from each sensor as from all emitters together.
+    pub(crate) fn even(sensors: usize) -> Self {
+        Self {
+            parts: vec![PARTS; sensors],
+        }
+    }
+
+    /// Walks that a sensor has taken in a replica once so many were taken from the emitters.
+    #[inline]
+    pub(crate) fn walks(&self, sensor: usize, launched: u64) -> u64 {
+        let walks = u128::from(launched) * u128::from(self.parts[sensor]);
+        u64::try_from(walks.div_ceil(u128::from(PARTS))).unwrap_or(u64::MAX)
+    }
+
+    /// Walks from the emitters for one walk from this sensor.
+    #[inline]
+    pub(crate) fn launched(&self, sensor: usize) -> f64 {
+        f64::from(PARTS) / f64::from(self.parts[sensor])
+    }
+
+    /// The shares that a pilot run finds, for sensors of which the irradiance `exact` is known without walks.
+    pub(crate) fn piloted(
+        passes: &Passes,
+        receivers: &[Receiver],
+        exact: impl Fn(usize) -> f64,
+        seed: u64,
+    ) -> Self {
+        let sensors = receivers.len();
+        let pilot = Pilot {
+            // The main model alone, and of that S0 alone: the walks are the same.
+            passes: Passes {
+                apart: None,
+                ..*passes
+            },
+            channels: Channels::of_intensity(),
+            receivers,
+            tried: Self {
+                parts: vec![TRIED; sensors],
+            },
+        };
+        let rounds: Vec<Round> = (0..ROUNDS)
+            .into_par_iter()
+            // Beyond the streams of the run and of its pictures, so that no walk of the run is known beforehand.
+            .map(|round| pilot.round(Stream::new(seed, 2 * REPLICAS + round)))
+            .collect();
+        let free: Vec<usize> = (0..sensors)
+            .filter(|&s| !receivers[s].enclosed && receivers[s].is_irradiance())
+            .collect();
+        let mut needs: Vec<Need> = free
+            .iter()
+            .map(|&sensor| Need::of(&rounds, sensor, exact(sensor)))
+            .collect();
+        let mean = needs.iter().map(|n| n.mean).sum::<f64>() / needs.len().max(1) as f64;
+        for need in &mut needs {
+            let square = need.mean.max(1e-3 * mean).powi(2);
+            need.launched /= square;
+            need.gathered /= square;
+        }
+        let walks = f64::from(ROUNDS) * LAUNCHED as f64;
+        let cost_launched = rounds.iter().map(|r| r.cost_launched).sum::<f64>() / walks;
+        let walks = f64::from(ROUNDS) * GATHERED as f64 * free.len() as f64;
+        let cost_gathered = rounds.iter().map(|r| r.cost_gathered).sum::<f64>() / walks;
+        let mut shares = Self::even(sensors);
+        if let Some(shared) = cheapest(&needs, cost_launched, cost_gathered) {
+            for (&sensor, need) in free.iter().zip(&needs) {
+                let parts = f64::from(PARTS) * need.gathered / (shared - need.launched);
+                // A share that is no number asks for nothing.
+                shares.parts[sensor] = parts.clamp(1.0, f64::from(MOST)).round() as u32;
+            }
+        }
+        shares
+    }
+}
+
+/// What a sensor needs: relative variance of one walk of either kind, and S0.
+struct Need {
+    mean: f64,
+    launched: f64,
+    gathered: f64,
+}
+
+impl Need {
+    fn of(rounds: &[Round], sensor: usize, exact: f64) -> Self {
+        let (local, from_emitters) = moments(rounds.iter().map(|r| r.launched[sensor]));
+        let (looked, from_sensor) = moments(rounds.iter().map(|r| r.gathered[sensor]));
+        Self {
+            mean: exact + local + looked,
+            launched: from_emitters * LAUNCHED as f64,
+            gathered: from_sensor * GATHERED as f64,
+        }
+    }
+}
+
+/// Mean and variance of some values.
+fn moments(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
+    let count = values.clone().count() as f64;
+    let mean = values.clone().sum::<f64>() / count;
+    let squares: f64 = values.map(|v| (v - mean) * (v - mean)).sum();
+    (mean, squares / (count - 1.0))
+}
+
+/// The relative variance that walks from the emitters alone may have at the cheapest point, per walk of theirs; `None`
+/// where they bring no sensor any variance.
+///
+/// At ε² = V/n the n walks from the emitters leave each sensor W/(V − L) walks of its own for one of theirs, where L and W
+/// are the variances of a walk of either kind. All errors are then ε, and the cost is in proportion to
+/// V c + Σ W/(1 − L/V) c′.
+fn cheapest(needs: &[Need], cost_launched: f64, cost_gathered: f64) -> Option<f64> {
+    let greatest = needs.iter().map(|n| n.launched).fold(0.0, f64::max);
+    if greatest <= 0.0 {
+        return None;
+    }
+    let cost = |variance: f64| {
+        let gathered = needs
+            .iter()
+            .map(|n| n.gathered / (1.0 - n.launched / variance));
+        variance * cost_launched + gathered.sum::<f64>() * cost_gathered
+    };
+    let mut best: Option<(f64, f64)> = None;
+    let mut variance = 1.05 * greatest;
+    for _ in 0..40 {
+        let cost = cost(variance);
+        if best.is_none_or(|(least, _)| cost < least) {
+            best = Some((cost, variance));
+        }
+        variance *= 1.25;
+    }
+    best.map(|(_, variance)| variance)
+}
+
+/// What the pilot works with.
+struct Pilot<'a> {
+    passes: Passes<'a>,
+    channels: Channels,
+    receivers: &'a [Receiver],
+    tried: Allocation,
+}
+
+/// One round of the pilot: what a walk of either kind brings to S0 at each sensor, and what all of them cost.
+struct Round {
+    launched: Vec<f64>,
+    gathered: Vec<f64>,
+    cost_launched: f64,
+    cost_gathered: f64,
+}
+
+impl Pilot<'_> {
+    fn round(&self, stream: Stream) -> Round {
+        let count = self.channels.count;
+        let mut launched = vec![0.0; self.receivers.len() * count];
+        let local = local::<1>(
+            &self.passes,
+            &self.channels,
+            self.receivers,
+            &self.tried,
+            stream,
+            0..LAUNCHED,
+            &mut launched,
+        );
+        let mut gathered = vec![0.0; launched.len()];
+        let mut effort = Effort::default();
+        for (sensor, sums) in gathered.chunks_mut(count).enumerate() {
+            if !self.receivers[sensor].enclosed {
+                effort += gather::<1>(
+                    &self.passes,
+                    &self.channels,
+                    &self.receivers[sensor],
+                    self.tried.launched(sensor),
+                    stream.branch(sensor as u64),
+                    0..GATHERED,
+                    sums,
+                );
+            }
+        }
+        let look = if self.passes.main.mirrors.is_empty() {
+            0.0
+        } else {
+            LOOK
+        };
+        let means = |sums: &[f64], walks: u64| {
+            let first = sums.iter().step_by(count);
+            first.map(|sum| sum / walks as f64).collect()
+        };
+        Round {
+            launched: means(&launched, LAUNCHED),
+            gathered: means(&gathered, GATHERED),
+            cost_launched: RAY * local.rays as f64 + JOIN * local.joins as f64,
+            // Every other ray of a walk from a sensor leads to a vertex that may look into mirrors.
+            cost_gathered: (RAY + 0.5 * look) * effort.rays as f64,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn walks_of_a_share_are_rounded_up_so_that_every_sensor_has_one() {
+        let shares = Allocation {
+            parts: vec![1, 16, 64, 512],
+        };
+        let walks = |launched| [0, 1, 2, 3].map(|sensor| shares.walks(sensor, launched));
+        assert_eq!(walks(0), [0; 4]);
+        assert_eq!(walks(1), [1, 1, 1, 8]);
+        assert_eq!(walks(128), [2, 32, 128, 1024]);
+        assert_eq!(shares.walks(3, u64::MAX), u64::MAX);
+    }
+
+    #[test]
+    fn shares_bring_all_sensors_to_one_error_at_the_least_cost() {
+        // One sensor, L = W = 1 and equal costs: V + 1/(1 − 1/V) is least at V = 2, and W/(V − L) = 1.
+        let need = |launched, gathered| Need {
+            mean: 1.0,
+            launched,
+            gathered,
+        };
+        let variance = cheapest(&[need(1.0, 1.0)], 1.0, 1.0).unwrap();
+        assert!((variance / 2.0 - 1.0).abs() < 0.13, "{variance}");
+        // Walks from a sensor that cost nothing are taken without end.
+        let needs = [need(1.0, 1.0), need(0.1, 4.0)];
+        let dear = cheapest(&needs, 1.0, 100.0).unwrap();
+        let cheap = cheapest(&needs, 1.0, 1e-3).unwrap();
+        assert!(cheap < 1.06 && dear > 4.0, "{cheap} {dear}");
+        assert_eq!(cheapest(&[need(0.0, 1.0)], 1.0, 1.0), None);
+    }
+}
