@@ -30,6 +30,10 @@ pub struct Circumstances<'a> {
     pub variants: usize,
     /// Names of those that failed.
     pub failed: &'a [String],
+    /// Sets of walks that were taken for them.
+    pub batches: usize,
+    /// Names of variants that walks for the base would have served badly.
+    pub apart: &'a [String],
     /// Time it took, in seconds.
     pub seconds: f64,
     /// Threads it ran on.
@@ -50,7 +54,17 @@ struct Json<'a, G> {
     complete: bool,
     variants: usize,
     failed: &'a [String],
+    walks: Walks<'a>,
     sensors: Vec<G>,
+}
+
+/// How variants share walks.
+#[derive(Serialize)]
+struct Walks<'a> {
+    /// Sets of walks.
+    sets: usize,
+    /// Variants too far from the base to share its walks.
+    apart: &'a [String],
 }
 
 /// The study as JSON.
@@ -77,6 +91,10 @@ pub fn json(scene: &Scene, circumstances: &Circumstances, findings: &[Finding]) 
         complete,
         variants: circumstances.variants,
         failed: circumstances.failed,
+        walks: Walks {
+            sets: circumstances.batches,
+            apart: circumstances.apart,
+        },
         sensors: findings.iter().map(Finding::json).collect(),
     })?;
     text.push(b'\n');
@@ -91,13 +109,22 @@ pub fn text(circumstances: &Circumstances, findings: &[Finding], directory: &Pat
         text.push('\n');
     }
     text += &format!(
-        "{} variants of {} samples each, seed {}; {} on {} threads\n{}\n",
+        "{} variants of {} samples each, along {} of walks, seed {}; {} on {} threads\n",
         circumstances.variants,
         circumstances.computed.samples,
+        match circumstances.batches {
+            1 => "one set".to_owned(),
+            sets => format!("{sets} sets"),
+        },
         circumstances.computed.seed,
         duration(circumstances.seconds),
         circumstances.threads,
-        directory.display()
     );
-    text
+    if !circumstances.apart.is_empty() {
+        text += &format!(
+            "too far from the base to share its walks: {}\n",
+            circumstances.apart.join(", ")
+        );
+    }
+    text + &format!("results in {}\n", directory.display())
 }

@@ -71,7 +71,9 @@ impl<'a> Finding<'a> {
         let (_, base) = measured(first)?;
         let others: Vec<(&Outcome, &Measured)> = others.iter().filter_map(measured).collect();
         let less = |quantity| {
-            let less = |(_, it): &(&Outcome, &Measured)| it.less(base, quantity);
+            let less = |(outcome, it): &(&Outcome, &Measured)| {
+                it.less(outcome.base[group].as_ref()?, quantity)
+            };
             others.iter().map(less).collect::<Vec<Option<Estimate>>>()
         };
         let of_mean: Vec<Estimate> = less(Quantity::Mean).into_iter().flatten().collect();

@@ -2,6 +2,7 @@
 
 mod analyse;
 mod args;
+mod batch;
 mod chart;
 mod check;
 mod colour;

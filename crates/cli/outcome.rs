@@ -2,6 +2,7 @@
 
 use crate::digest::Digest;
 use malus_estimator::{Estimate, Group, Replicates};
+use std::sync::Arc;
 
 /// One variant.
 #[derive(Clone, Debug)]
@@ -12,6 +13,8 @@ pub struct Outcome {
     pub values: Vec<Option<String>>,
     /// What each sensor group measured; `None` where all its points are inside a solid.
     pub groups: Vec<Option<Measured>>,
+    /// What the base gave along the same walks, or by the same random numbers.
+    pub base: Arc<Vec<Option<Measured>>>,
 }
 
 impl Outcome {

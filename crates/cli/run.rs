@@ -153,7 +153,7 @@ fn write(
     summary: &[u8],
     directory: &Directory,
 ) -> anyhow::Result<()> {
-    let sensors = rows::sensors(scene, results)?;
+    let sensors = rows::sensors(scene, &results.groups)?;
     let grids = rows::grids(scene, digests)?;
     directory.write("sensors.csv", &sensors)?;
     directory.write("grids.csv", &grids)?;

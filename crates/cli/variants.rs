@@ -44,9 +44,9 @@ impl Variants {
     ///
     /// # Errors
     /// A result that is no finite number, or the file cannot be written.
-    pub fn add(&mut self, outcome: &Outcome, base: &Outcome) -> Result<()> {
+    pub fn add(&mut self, outcome: &Outcome) -> Result<()> {
         let mut row = head(&outcome.name, &outcome.values);
-        for (group, base) in outcome.groups.iter().zip(&base.groups) {
+        for (group, base) in outcome.groups.iter().zip(outcome.base.iter()) {
             let Some(group) = group else {
                 row.extend(GROUP.map(|_| String::new()));
                 continue;

@@ -7,9 +7,11 @@ use crate::pass::{Channels, Effort, Passes};
 use crate::random::{Stream, Uniforms};
 use crate::receiver::Receiver;
 use crate::trace::{Path, Techniques, Walk};
+use crate::variation::Variation;
 use std::ops::Range;
 
-/// Adds the walks `range` of one sensor to its sums; for each of them so many are `launched` from the emitters.
+/// Adds the walks `range` of one sensor to its sums, those of one variant after those of the other; for each walk so many
+/// are `launched` from the emitters.
 pub(crate) fn gather<const N: usize>(
     passes: &Passes,
     channels: &Channels,
@@ -19,77 +21,88 @@ pub(crate) fn gather<const N: usize>(
     range: Range<u64>,
     sums: &mut [f64],
 ) -> Effort {
-    let materials = passes.main.materials;
     let techniques = Techniques {
         local: launched * passes.techniques.local,
         ..passes.techniques
     };
     let mut effort = Effort::default();
     let mut path = Path::default();
+    let variations = passes.main.variations;
+    let mut main: Vec<Gathering<N>> = Vec::with_capacity(variations.len());
+    let mut scalar: Vec<Gathering<1>> = Vec::new();
     for index in range {
         let uniforms = stream.walk(index);
-        let mut main = Gathering::<N>::new(receiver);
+        restart(&mut main, variations.len(), receiver);
+        if channels.along.is_some() {
+            restart(&mut scalar, variations.len(), receiver);
+        }
+        effort += follow(
+            techniques,
+            &passes.main,
+            receiver,
+            uniforms,
+            &mut path,
+            |path, first| {
+                read(&mut main, variations, path, first);
+                read(&mut scalar, variations, path, first);
+            },
+        );
+        for (gathering, sums) in main.iter().zip(sums.chunks_mut(channels.count)) {
+            for (sum, value) in sums.iter_mut().zip(gathering.sum()) {
+                *sum += value;
+            }
+            for (sum, value) in sums[channels.found..].iter_mut().zip(gathering.found()) {
+                *sum += value;
+            }
+        }
         if let Some(channel) = channels.along {
-            let mut scalar = Gathering::<1>::new(receiver);
-            effort += follow(
-                techniques,
-                &passes.main,
-                receiver,
-                uniforms,
-                &mut path,
-                |path, first| {
-                    if first {
-                        main.look(path);
-                        scalar.look(path);
-                    } else {
-                        main.follow(path, materials);
-                        scalar.follow(path, materials);
-                    }
-                },
-            );
-            sums[channel] += scalar.sum()[0];
-        } else {
-            effort += follow(
-                techniques,
-                &passes.main,
-                receiver,
-                uniforms,
-                &mut path,
-                |path, first| {
-                    if first {
-                        main.look(path);
-                    } else {
-                        main.follow(path, materials);
-                    }
-                },
-            );
-        }
-        for (sum, value) in sums.iter_mut().zip(main.sum()) {
-            *sum += value;
-        }
-        for (sum, value) in sums[channels.found..].iter_mut().zip(main.found()) {
-            *sum += value;
+            for (gathering, sums) in scalar.iter().zip(sums.chunks_mut(channels.count)) {
+                sums[channel] += gathering.sum()[0];
+            }
         }
         if let (Some(medium), Some(channel)) = (&passes.apart, channels.apart) {
-            let mut apart = Gathering::<1>::new(receiver);
+            let variations = medium.variations;
+            restart(&mut scalar, variations.len(), receiver);
             effort += follow(
                 techniques,
                 medium,
                 receiver,
                 uniforms,
                 &mut path,
-                |path, first| {
-                    if first {
-                        apart.look(path);
-                    } else {
-                        apart.follow(path, medium.materials);
-                    }
-                },
+                |path, first| read(&mut scalar, variations, path, first),
             );
-            sums[channel] += apart.sum()[0];
+            for (gathering, sums) in scalar.iter().zip(sums.chunks_mut(channels.count)) {
+                sums[channel] += gathering.sum()[0];
+            }
         }
     }
     effort
+}
+
+/// Makes room for what the variants read of one more walk.
+fn restart<'r, const N: usize>(
+    gatherings: &mut Vec<Gathering<'r, N>>,
+    count: usize,
+    receiver: &'r Receiver,
+) {
+    gatherings.clear();
+    gatherings.extend((0..count).map(|_| Gathering::new(receiver)));
+}
+
+/// Reads the next piece of a walk, or `first` what the sensor itself sees.
+fn read<const N: usize>(
+    gatherings: &mut [Gathering<N>],
+    variations: &[Variation],
+    path: &Path,
+    first: bool,
+) {
+    for (gathering, variation) in gatherings.iter_mut().zip(variations) {
+        if first {
+            gathering.look(path, variation);
+        } else {
+            gathering.follow(path, variation);
+        }
+    }
 }
 
 /// Takes a walk to its end, piece by piece; `evaluate` is given first what the sensor itself sees.

@@ -7,6 +7,7 @@
 mod allocation;
 mod beam;
 mod choose;
+mod cover;
 mod direct;
 mod direction;
 mod emitters;
@@ -31,10 +32,13 @@ mod run;
 mod sight;
 mod statistics;
 mod trace;
+mod variation;
 
+pub use allocation::Allocation;
 pub use picture::{Picture, picture};
 pub use results::{
     Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Replicates, Results, Shares, Stop,
 };
-pub use run::run;
+pub use run::{Together, run, run_together};
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};
+pub use variation::serves;

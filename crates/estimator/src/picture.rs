@@ -61,7 +61,7 @@ fn taken<const N: usize>(
     watch: &mut dyn FnMut(f64) -> Answer,
 ) -> Picture {
     let emitters = Emitters::new(scene);
-    let modelled = Modelled::new(scene, settings.model);
+    let modelled = Modelled::alone(scene, settings.model);
     let passes = Passes {
         main: modelled.medium(scene, &emitters),
         apart: None,
@@ -136,7 +136,7 @@ fn pixel<const N: usize>(
             &mut path,
             |path, first| {
                 if !first {
-                    gathering.follow(path, passes.main.materials);
+                    gathering.follow(path, passes.main.first());
                 }
             },
         );

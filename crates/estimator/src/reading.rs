@@ -16,6 +16,8 @@ pub(crate) struct Readings<'a> {
     /// What is known without chance, one Stokes vector a sensor; S0 is the same in every model.
     exact: Vec<[f64; 4]>,
     unmet: Unmet,
+    /// Which of so many variants is read.
+    variant: (usize, usize),
 }
 
 /// Light that a walk from a sensor meets by chance alone, off a mirror, and may not have met yet.
@@ -49,6 +51,7 @@ impl<'a> Readings<'a> {
         allocation: &'a Allocation,
         exact: &[[f64; N]],
         unmet: Unmet,
+        variant: (usize, usize),
     ) -> Self {
         let padded = |stokes: &[f64; N]| {
             std::array::from_fn(|component| stokes.get(component).copied().unwrap_or(0.0))
@@ -60,14 +63,16 @@ impl<'a> Readings<'a> {
             allocation,
             exact: exact.iter().map(padded).collect(),
             unmet,
+            variant,
         }
     }
 
     /// What walks from a sensor and walks from the emitters bring it, on average.
     fn parts(&self, means: &Means, sensor: usize, channel: usize) -> [f64; 2] {
-        let index = sensor * self.channels.count + channel;
+        let (variant, variants) = self.variant;
+        let index = (sensor * variants + variant) * self.channels.count + channel;
         let walks = self.allocation.walks(sensor, means.points());
-        let half = self.receivers.len() * self.channels.count;
+        let half = self.receivers.len() * variants * self.channels.count;
         [means.over(index, walks), means.at(half + index)]
     }
 

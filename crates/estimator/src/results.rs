@@ -1,5 +1,6 @@
 //! What a run gives back: a reading at every sensor point, padded to four Stokes components.
 
+use crate::allocation::Allocation;
 use malus_optics::Representation;
 use malus_scene::Estimator;
 
@@ -29,6 +30,8 @@ pub struct Results {
     pub relative_error_max: f64,
     /// What each way of finding light has brought of S0.
     pub shares: Shares,
+    /// How many walks each sensor has taken for one from the emitters.
+    pub allocation: Allocation,
     /// Where the emitted flux goes, in the main model.
     pub energy: Energy,
     /// Paths that the estimator cannot see, walks that were truncated.

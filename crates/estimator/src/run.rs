@@ -11,10 +11,11 @@ use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
 use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
-use crate::results::{Answer, Progress, Results, Stop};
+use crate::results::{Answer, Group, Progress, Results, Stop};
 use crate::sight::Sight;
 use crate::statistics::REPLICAS;
 use crate::trace::LONGEST;
+use crate::variation::{Variation, covering};
 use malus_optics::Representation;
 use malus_scene::{Estimator, Model, Scene, Settings};
 
@@ -40,11 +41,61 @@ pub fn run(
     settings: &Settings,
     watch: &mut dyn FnMut(&Progress) -> Answer,
 ) -> Results {
-    let representation = representation_of(scene, settings);
+    let alone = Ensemble {
+        scenes: &[scene],
+        covering: scene,
+        like: None,
+    };
+    dispatched(&alone, settings, watch).first
+}
+
+/// What several scenes give that were evaluated along the same walks.
+#[derive(Debug)]
+pub struct Together {
+    /// The first scene.
+    pub first: Results,
+    /// The sensor groups of the others.
+    pub others: Vec<Vec<Group>>,
+}
+
+/// Evaluates `scenes`, one at least, all of which the same walks [serve](crate::serves), along these.
+///
+/// Stopping rules hold for the first of them. Walks are shared out between the sensors as in `like`, where it is given, so
+/// that the two are paired. Everything else is as in [`run`].
+pub fn run_together(
+    scenes: &[&Scene],
+    settings: &Settings,
+    like: Option<&Allocation>,
+    watch: &mut dyn FnMut(&Progress) -> Answer,
+) -> Together {
+    let covering = covering(scenes);
+    let ensemble = Ensemble {
+        scenes,
+        covering: &covering,
+        like,
+    };
+    dispatched(&ensemble, settings, watch)
+}
+
+/// Scenes that are evaluated along the same walks.
+struct Ensemble<'a> {
+    scenes: &'a [&'a Scene],
+    /// The scene by which emitters are chosen.
+    covering: &'a Scene,
+    /// How walks are shared out; `None`: a pilot finds it.
+    like: Option<&'a Allocation>,
+}
+
+fn dispatched(
+    ensemble: &Ensemble,
+    settings: &Settings,
+    watch: &mut dyn FnMut(&Progress) -> Answer,
+) -> Together {
+    let representation = representation_of(ensemble.covering, settings);
     match representation {
-        Representation::Intensity => run_with::<1>(scene, settings, representation, watch),
-        Representation::Linear => run_with::<3>(scene, settings, representation, watch),
-        Representation::Full => run_with::<4>(scene, settings, representation, watch),
+        Representation::Intensity => run_with::<1>(ensemble, settings, representation, watch),
+        Representation::Linear => run_with::<3>(ensemble, settings, representation, watch),
+        Representation::Full => run_with::<4>(ensemble, settings, representation, watch),
     }
 }
 
@@ -57,19 +108,25 @@ pub(crate) fn representation_of(scene: &Scene, settings: &Settings) -> Represent
 }
 
 fn run_with<const N: usize>(
-    scene: &Scene,
+    ensemble: &Ensemble,
     settings: &Settings,
     representation: Representation,
     watch: &mut dyn FnMut(&Progress) -> Answer,
-) -> Results {
-    let channels = Channels::new(scene, settings, representation);
+) -> Together {
+    let Ensemble {
+        scenes,
+        covering: scene,
+        like,
+    } = *ensemble;
+    let mirrors = scenes.iter().any(|it| has_mirrors(&it.materials));
+    let channels = Channels::new(mirrors, settings, representation);
     let emitters = Emitters::new(scene);
     let mut receivers = Receiver::all(scene);
     let (techniques, estimator_reason) = techniques(settings.estimator, &receivers);
-    let main = Modelled::new(scene, settings.model);
+    let main = Modelled::new(scenes, scene, settings.model);
     let apart = channels.apart.map(|_| match settings.model {
-        Model::Diffuse => Modelled::new(scene, Model::Scalar),
-        Model::Polarised | Model::Scalar => Modelled::new(scene, Model::Diffuse),
+        Model::Diffuse => Modelled::new(scenes, scene, Model::Scalar),
+        Model::Polarised | Model::Scalar => Modelled::new(scenes, scene, Model::Diffuse),
     });
     let passes = Passes {
         main: main.medium(scene, &emitters),
@@ -83,16 +140,19 @@ fn run_with<const N: usize>(
     let sight = techniques
         .gather
         .then(|| Sight::new(&scene.surfaces, &emitters, &mut receivers));
-    let exact = match cells {
+    let exact = |variation: &Variation| match cells {
         // Counted like all other light.
         Some(_) => vec![[0.0; N]; receivers.len()],
-        None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref()),
+        None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref(), variation),
     };
-    let allocation = if techniques.gather && techniques.local > 0.0 {
-        let exact = |sensor: usize| exact[sensor][0];
-        Allocation::piloted(&passes, &receivers, exact, settings.seed)
-    } else {
-        Allocation::even(receivers.len())
+    let exact: Vec<Vec<[f64; N]>> = passes.main.variations.iter().map(exact).collect();
+    let allocation = match like {
+        Some(like) => like.clone(),
+        None if techniques.gather && techniques.local > 0.0 => {
+            let exact = |sensor: usize| exact[0][sensor][0];
+            Allocation::piloted(&passes, &receivers, exact, settings.seed)
+        }
+        None => Allocation::even(receivers.len()),
     };
     let engine = Engine::<N> {
         passes,
@@ -107,7 +167,20 @@ fn run_with<const N: usize>(
         None if techniques.gather => unmet(&passes, &emitters),
         None => Unmet::default(),
     };
-    let readings = Readings::new(scene, channels, &receivers, &allocation, &exact, unmet);
+    let readings = |variant: usize| {
+        let exact = &exact[variant];
+        let variant = (variant, scenes.len());
+        Readings::new(
+            scene,
+            channels,
+            &receivers,
+            &allocation,
+            exact,
+            unmet,
+            variant,
+        )
+    };
+    let first = readings(0);
 
     let mut tally = engine.tally();
     let mut taken = 0;
@@ -122,7 +195,7 @@ fn run_with<const N: usize>(
         truncated += engine.advance(&mut tally, until).truncated;
         taken = until;
         if taken == checkpoint {
-            reached = Some(readings.relative_error(&tally));
+            reached = Some(first.relative_error(&tally));
         }
         let progress = Progress {
             samples: taken * u64::from(REPLICAS),
@@ -153,7 +226,7 @@ fn run_with<const N: usize>(
     };
 
     let ledger = Ledger::keep(&engine, settings.estimator, taken);
-    let relative_error_max = readings.relative_error(&tally);
+    let relative_error_max = first.relative_error(&tally);
     // The scalar model beside the diffuse one has mirrors of its own.
     let mut warnings: Vec<String> = engine
         .passes
@@ -166,26 +239,34 @@ fn run_with<const N: usize>(
     } else {
         warnings.extend(exact::singular(&engine.passes.main, &receivers));
     }
-    warnings.extend(ledger.leak(scene));
+    warnings.extend(ledger.leak(scenes[0]));
     if truncated > 0 {
         warnings.push(format!(
             "{truncated} walks were cut off after {LONGEST} reflections: what they still carried is missing"
         ));
     }
-    Results {
-        groups: readings.groups(&tally),
+    let first = Results {
+        groups: first.groups(&tally),
         samples: taken * u64::from(REPLICAS),
         dof: REPLICAS - 1,
         representation,
         representation_reason: representation_reason(scene, settings),
         estimator: settings.estimator,
         estimator_reason: estimator_reason.into(),
-        shares: readings.shares(&tally),
+        shares: first.shares(&tally),
+        allocation: allocation.clone(),
         complete: stop != Stop::Interrupted,
         stop,
         relative_error_max,
         energy: ledger.energy(engine.passes.main.materials),
         warnings,
+    };
+    let others = 1..scenes.len();
+    Together {
+        others: others
+            .map(|variant| readings(variant).groups(&tally))
+            .collect(),
+        first,
     }
 }
 

@@ -20,6 +20,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// A scene, checked: nothing later needs to look at a file again.
+#[derive(Clone)]
 pub struct Scene {
     /// Name for titles and results.
     pub name: String,
