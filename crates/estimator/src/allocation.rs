@@ -5,7 +5,7 @@
 //! each of them errs at every sensor. The shares are then those that bring all sensors to one relative error at the least
 //! cost; as they depend on scene and seed alone, the sums of a run do not depend on when it stops.
 
-use crate::gather::gather;
+use crate::gather::{Aims, Observer, gather};
 use crate::local::local;
 use crate::medium::Medium;
 use crate::pass::{Channels, Effort, Passes};
@@ -64,6 +64,7 @@ impl Allocation {
     pub(crate) fn piloted(
         passes: &Passes,
         receivers: &[Receiver],
+        aims: &[Aims],
         exact: impl Fn(usize) -> f64,
         seed: u64,
     ) -> Self {
@@ -80,6 +81,7 @@ impl Allocation {
             },
             channels: Channels::of_intensity(),
             receivers,
+            aims,
             tried: Self {
                 parts: vec![TRIED; sensors],
             },
@@ -179,6 +181,7 @@ struct Pilot<'a> {
     passes: Passes<'a>,
     channels: Channels,
     receivers: &'a [Receiver],
+    aims: &'a [Aims<'a>],
     tried: Allocation,
 }
 
@@ -210,8 +213,11 @@ impl Pilot<'_> {
                 effort += gather::<1>(
                     &self.passes,
                     &self.channels,
-                    &self.receivers[sensor],
-                    self.tried.launched(sensor),
+                    Observer {
+                        receiver: &self.receivers[sensor],
+                        aims: &self.aims[sensor],
+                        launched: self.tried.launched(sensor),
+                    },
                     stream.branch(sensor as u64),
                     0..GATHERED,
                     sums,

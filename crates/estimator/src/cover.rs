@@ -19,6 +19,23 @@ pub(crate) struct Odds {
     pub through: f64,
 }
 
+impl Odds {
+    /// The same for a walk that passes mirrors and panes alone; `surely` where it is to be mirrored.
+    pub(crate) fn of_mirrors(self, surely: bool) -> Self {
+        if surely {
+            return Self {
+                diffuse: 0.0,
+                mirror: 1.0,
+                through: 0.0,
+            };
+        }
+        Self {
+            diffuse: 0.0,
+            ..self
+        }
+    }
+}
+
 /// The reflectors of one surface.
 #[derive(Debug, Clone)]
 pub(crate) struct Cover {

@@ -2,7 +2,7 @@
 
 use crate::allocation::Allocation;
 use crate::direct::{Cells, direct};
-use crate::gather::gather;
+use crate::gather::{Aims, Observer, gather};
 use crate::local::local;
 use crate::pass::{Channels, Effort, Passes};
 use crate::random::Stream;
@@ -26,6 +26,8 @@ pub(crate) struct Engine<'a, const N: usize> {
     pub receivers: &'a [Receiver],
     /// Walks from each sensor, relative to those from the emitters.
     pub allocation: &'a Allocation,
+    /// How each sensor aims at small mirrors.
+    pub aims: &'a [Aims<'a>],
     /// The cells in which `direct` counts, where that was asked for.
     pub cells: Option<&'a Cells>,
     /// Seed of all random numbers.
@@ -135,8 +137,11 @@ impl<const N: usize> Engine<'_, N> {
                 gather::<N>(
                     &self.passes,
                     &self.channels,
-                    receiver,
-                    self.allocation.launched(sensor),
+                    Observer {
+                        receiver,
+                        aims: &self.aims[sensor],
+                        launched: self.allocation.launched(sensor),
+                    },
                     stream,
                     walks(taken)..walks(until),
                     sums,

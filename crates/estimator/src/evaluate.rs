@@ -4,6 +4,7 @@
 //! analyser and gives it out by a Stokes vector of its own, so between chains light is one number.
 
 use crate::emitters::{Start, State};
+use crate::gather::Part;
 use crate::medium::Step;
 use crate::receiver::Receiver;
 use crate::trace::{Connection, Event, Path, Vertex};
@@ -212,8 +213,17 @@ impl<'r, const N: usize> Gathering<'r, N> {
         self.found
     }
 
+    /// Light met along a piece of a walk.
+    pub(crate) fn read(&mut self, path: &Path, part: Part, variation: &Variation) {
+        match part {
+            Part::Start => self.look(path, variation),
+            Part::Onward => self.follow(path, variation),
+        }
+    }
+
     /// Light that the sensor sees before the walk has left it.
-    pub(crate) fn look(&mut self, path: &Path, variation: &Variation) {
+    fn look(&mut self, path: &Path, variation: &Variation) {
+        self.chain = Chain::ToSensor(None);
         for connection in &path.connections {
             let chain = self.chain;
             self.connect(path, connection, chain, 1.0, variation);
@@ -221,7 +231,7 @@ impl<'r, const N: usize> Gathering<'r, N> {
     }
 
     /// Light met along the next vertices of the walk.
-    pub(crate) fn follow(&mut self, path: &Path, variation: &Variation) {
+    fn follow(&mut self, path: &Path, variation: &Variation) {
         for vertex in &path.vertices {
             let material = &variation.materials[vertex.material as usize];
             if vertex.emission > 0.0

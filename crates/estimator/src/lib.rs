@@ -15,6 +15,7 @@ mod engine;
 mod evaluate;
 mod exact;
 mod gather;
+mod glints;
 mod journey;
 mod launched;
 mod ledger;

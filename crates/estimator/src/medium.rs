@@ -2,6 +2,7 @@
 
 use crate::cover::{Cover, Odds};
 use crate::emitters::{Emitters, Site};
+use crate::glints::Glints;
 use crate::mirrors::{Drawn, Mirrors, Target, Viewer};
 use crate::random::Fresh;
 use crate::variation::Variation;
@@ -25,6 +26,8 @@ pub(crate) struct Medium<'a> {
     pub emitters: &'a Emitters<'a>,
     /// Flat mirrors that can be looked into.
     pub mirrors: &'a Mirrors,
+    /// Mirrors that cannot.
+    pub glints: &'a Glints,
     /// Whether anything lets light through.
     pub panes: bool,
 }

@@ -421,6 +421,10 @@ impl Mirrors {
             if view.facets.last() == Some(&index) {
                 continue;
             }
+            // Most mirrors do not stand on one side of both.
+            if target.finite && facet.above(beam.apex) * facet.above(target.at) <= 0.0 {
+                continue;
+            }
             let span = if target.finite {
                 facet.image(target.at) - beam.apex
             } else {
@@ -586,7 +590,7 @@ fn tested(mirrors: u32) -> f64 {
 }
 
 /// Share of diffuse light that a reflector mirrors, for the state of light that it mirrors most of.
-fn reflectance(cover: &Cover) -> f64 {
+pub(crate) fn reflectance(cover: &Cover) -> f64 {
     const STEPS: i32 = 32;
     // ∫ R 2μ dμ by the midpoint rule in μ².
     let steps = (0..STEPS).map(|step| {

@@ -2,6 +2,7 @@
 
 use crate::cover::Cover;
 use crate::emitters::Emitters;
+use crate::glints::Glints;
 use crate::medium::Medium;
 use crate::mirrors::Mirrors;
 use crate::trace::Techniques;
@@ -126,6 +127,7 @@ pub(crate) struct Modelled {
     covers: Vec<Cover>,
     variations: Vec<Variation>,
     mirrors: Mirrors,
+    glints: Glints,
 }
 
 impl Modelled {
@@ -133,8 +135,10 @@ impl Modelled {
     pub(crate) fn new(scenes: &[&Scene], covering: &Scene, model: Model) -> Self {
         let covers = covers(scenes, model);
         let variation = |scene: &&Scene| Variation::new(scene, covering, model);
+        let mirrors = Mirrors::new(&covering.surfaces, &covers);
         Self {
-            mirrors: Mirrors::new(&covering.surfaces, &covers),
+            glints: Glints::new(&covering.surfaces, &covers, &mirrors),
+            mirrors,
             materials: materials_of(model, &covering.materials),
             variations: scenes.iter().map(variation).collect(),
             covers,
@@ -155,6 +159,7 @@ impl Modelled {
             variations: &self.variations,
             emitters,
             mirrors: &self.mirrors,
+            glints: &self.glints,
             panes: self.materials.iter().any(|m| m.optics.is_pane()),
         }
     }

@@ -3,7 +3,7 @@
 use crate::choose::techniques;
 use crate::emitters::Emitters;
 use crate::evaluate::Gathering;
-use crate::gather::follow;
+use crate::gather::Way;
 use crate::pass::{Modelled, Passes};
 use crate::random::{Purpose, Stream};
 use crate::receiver::Receiver;
@@ -128,18 +128,16 @@ fn pixel<const N: usize>(
         let direction = camera.direction(column as f64 + u, row as f64 + v);
         let receiver = Receiver::of_radiance(camera.position, direction, camera.right);
         let mut gathering = Gathering::<N>::new(&receiver);
-        follow(
-            passes.techniques,
-            &passes.main,
-            &receiver,
+        let way = Way {
+            techniques: passes.techniques,
+            medium: passes.main,
+            receiver,
             uniforms,
-            &mut path,
-            |path, first| {
-                if !first {
-                    gathering.follow(path, passes.main.first());
-                }
-            },
-        );
+            aim: None,
+        };
+        way.follow(&mut path, |path, part| {
+            gathering.read(path, part, passes.main.first());
+        });
         let read = gathering.sum();
         squares += read[0] * read[0];
         for (sum, value) in stokes.iter_mut().zip(read) {

@@ -6,6 +6,7 @@ use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::exact;
+use crate::gather::Aims;
 use crate::ledger::Ledger;
 use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
@@ -146,11 +147,12 @@ fn run_with<const N: usize>(
         None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref(), variation),
     };
     let exact: Vec<Vec<[f64; N]>> = passes.main.variations.iter().map(exact).collect();
+    let aims = Aims::all(&passes, &receivers);
     let allocation = match like {
         Some(like) => like.clone(),
         None if techniques.gather && techniques.local > 0.0 => {
             let exact = |sensor: usize| exact[0][sensor][0];
-            Allocation::piloted(&passes, &receivers, exact, settings.seed)
+            Allocation::piloted(&passes, &receivers, &aims, exact, settings.seed)
         }
         None => Allocation::even(receivers.len()),
     };
@@ -159,25 +161,25 @@ fn run_with<const N: usize>(
         channels,
         receivers: &receivers,
         allocation: &allocation,
+        aims: &aims,
         cells: cells.as_ref(),
         seed: settings.seed,
     };
     let unmet = match &cells {
-        Some(cells) => direct::unmet(&passes.main, cells),
-        None if techniques.gather => unmet(&passes, &emitters),
-        None => Unmet::default(),
+        Some(cells) => vec![direct::unmet(&passes.main, cells); receivers.len()],
+        None if techniques.gather => unmet(&passes, &emitters, &aims),
+        None => vec![Unmet::default(); receivers.len()],
     };
     let readings = |variant: usize| {
-        let exact = &exact[variant];
-        let variant = (variant, scenes.len());
         Readings::new(
             scene,
             channels,
             &receivers,
             &allocation,
-            exact,
-            unmet,
-            variant,
+            &exact[variant],
+            unmet.clone(),
+            techniques.mirrored,
+            (variant, scenes.len()),
         )
     };
     let first = readings(0);
@@ -270,8 +272,9 @@ fn run_with<const N: usize>(
     }
 }
 
-/// What may lie in mirrors that nothing looks into, and has not been met by chance yet.
-fn unmet(passes: &Passes, emitters: &Emitters) -> Unmet {
+/// What may lie for each sensor in mirrors that nothing looks into, and has not been met by chance yet.
+fn unmet(passes: &Passes, emitters: &Emitters, aims: &[Aims]) -> Vec<Unmet> {
+    let all = emitters.unmet();
     let share = |medium: &Medium| {
         if passes.techniques.mirrored {
             medium.mirrors.unseen()
@@ -279,20 +282,17 @@ fn unmet(passes: &Passes, emitters: &Emitters) -> Unmet {
             f64::from(u8::from(has_mirrors(medium.materials)))
         }
     };
-    let share = passes.media().map(share).fold(0.0, f64::max);
-    if std::env::var("DBG").is_ok() {
-        eprintln!("DBG share {share} {:?}", emitters.unmet());
-    }
-    let unmet = emitters.unmet();
-    if share > 0.0 {
-        // The most that there can be of it is what such mirrors can send on.
-        Unmet {
-            most: unmet.most * share,
-            ..unmet
-        }
-    } else {
-        Unmet::default()
-    }
+    // The most that there can be of it is what such mirrors can send on.
+    let most = passes.media().map(share).fold(0.0, f64::max);
+    let one = |aims: &Aims| match passes.techniques.mirrored {
+        true => aims.greatest(),
+        false => most,
+    };
+    let unmet = |aims: &Aims| Unmet {
+        one: all.one * one(aims),
+        most: all.most * most,
+    };
+    aims.iter().map(unmet).collect()
 }
 
 fn representation_reason(scene: &Scene, settings: &Settings) -> String {
