@@ -4,6 +4,7 @@ mod analyse;
 mod bad_input;
 mod printed;
 mod results;
+mod shards;
 mod stopping;
 
 pub use bad_input::{assert_told, refusal};

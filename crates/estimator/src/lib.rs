@@ -31,15 +31,17 @@ mod receiver;
 mod results;
 mod run;
 mod sight;
+mod state;
 mod statistics;
 mod trace;
 mod variation;
 
 pub use allocation::Allocation;
-pub use picture::{Picture, picture};
+pub use picture::{Film, Picture, expose};
 pub use results::{
     Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Replicates, Results, Shares, Stop,
 };
-pub use run::{Together, run, run_together};
+pub use run::{Together, resume, run, run_together};
+pub use state::{NoShard, Shard, State, StateError};
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};
 pub use variation::serves;

@@ -14,6 +14,7 @@ use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
 use crate::results::{Answer, Group, Progress, Results, Stop};
 use crate::sight::Sight;
+use crate::state::{Shard, State, StateError};
 use crate::statistics::REPLICAS;
 use crate::trace::LONGEST;
 use crate::variation::{Variation, covering};
@@ -42,12 +43,34 @@ pub fn run(
     settings: &Settings,
     watch: &mut dyn FnMut(&Progress) -> Answer,
 ) -> Results {
+    let mut state = State::new(Shard::WHOLE);
+    resume(scene, settings, &mut state, &mut |progress, _| {
+        watch(progress)
+    })
+    .expect("a state without walks fits every scene")
+}
+
+/// The same, from a state that an earlier run of the same scene and settings has left, or that parts of it have been
+/// joined to; the stopping rules alone may differ.
+///
+/// `watch` is shown the state between steps, and may keep it: a run that goes on from there has the bytes of one that was
+/// never set aside. Afterwards `state` holds all that was summed. Of a shard, the results are those of its own
+/// replicas.
+///
+/// # Errors
+/// The state does not fit the scene, or has come further than `settings.samples`.
+pub fn resume(
+    scene: &Scene,
+    settings: &Settings,
+    state: &mut State,
+    watch: &mut dyn FnMut(&Progress, &State) -> Answer,
+) -> Result<Results, StateError> {
     let alone = Ensemble {
         scenes: &[scene],
         covering: scene,
         like: None,
     };
-    dispatched(&alone, settings, watch).first
+    Ok(alone.run(settings, state, watch)?.first)
 }
 
 /// What several scenes give that were evaluated along the same walks.
@@ -75,7 +98,9 @@ pub fn run_together(
         covering: &covering,
         like,
     };
-    dispatched(&ensemble, settings, watch)
+    let mut state = State::new(Shard::WHOLE);
+    let together = ensemble.run(settings, &mut state, &mut |progress, _| watch(progress));
+    together.expect("a state without walks fits every scene")
 }
 
 /// Scenes that are evaluated along the same walks.
@@ -87,16 +112,21 @@ struct Ensemble<'a> {
     like: Option<&'a Allocation>,
 }
 
-fn dispatched(
-    ensemble: &Ensemble,
-    settings: &Settings,
-    watch: &mut dyn FnMut(&Progress) -> Answer,
-) -> Together {
-    let representation = representation_of(ensemble.covering, settings);
-    match representation {
-        Representation::Intensity => run_with::<1>(ensemble, settings, representation, watch),
-        Representation::Linear => run_with::<3>(ensemble, settings, representation, watch),
-        Representation::Full => run_with::<4>(ensemble, settings, representation, watch),
+impl Ensemble<'_> {
+    fn run(
+        &self,
+        settings: &Settings,
+        state: &mut State,
+        watch: &mut dyn FnMut(&Progress, &State) -> Answer,
+    ) -> Result<Together, StateError> {
+        let representation = representation_of(self.covering, settings);
+        match representation {
+            Representation::Intensity => {
+                run_with::<1>(self, settings, representation, state, watch)
+            }
+            Representation::Linear => run_with::<3>(self, settings, representation, state, watch),
+            Representation::Full => run_with::<4>(self, settings, representation, state, watch),
+        }
     }
 }
 
@@ -112,8 +142,13 @@ fn run_with<const N: usize>(
     ensemble: &Ensemble,
     settings: &Settings,
     representation: Representation,
-    watch: &mut dyn FnMut(&Progress) -> Answer,
-) -> Together {
+    state: &mut State,
+    watch: &mut dyn FnMut(&Progress, &State) -> Answer,
+) -> Result<Together, StateError> {
+    let limit = settings
+        .samples
+        .map(|samples| samples.div_ceil(u64::from(REPLICAS)).max(1));
+    state.check(limit)?;
     let Ensemble {
         scenes,
         covering: scene,
@@ -184,51 +219,51 @@ fn run_with<const N: usize>(
     };
     let first = readings(0);
 
-    let mut tally = engine.tally();
-    let mut taken = 0;
-    let mut truncated = 0;
+    engine.fit(&mut state.walks)?;
+    let mut taken = state.walks.points();
     let mut reached = None;
-    let limit = settings
-        .samples
-        .map(|samples| samples.div_ceil(u64::from(REPLICAS)).max(1));
     let stop = loop {
+        // A run that goes on is judged where it was set aside, too: it may have been right before its end.
+        if taken > 0 {
+            let checkpoint = taken == next_checkpoint(taken - 1) || Some(taken) == limit;
+            if checkpoint {
+                reached = Some(first.relative_error(&state.walks));
+            }
+            let progress = Progress {
+                samples: taken * u64::from(REPLICAS),
+                next_checkpoint: next_checkpoint(taken).min(limit.unwrap_or(u64::MAX))
+                    * u64::from(REPLICAS),
+                samples_limit: limit.map(|n| n * u64::from(REPLICAS)),
+                checkpoint,
+                relative_error: reached,
+                relative_error_goal: settings.relative_error,
+            };
+            let answer = watch(&progress, state);
+            if answer == Answer::Interrupt {
+                break Stop::Interrupted;
+            }
+            if checkpoint {
+                if let (Some(error), Some(goal)) = (reached, settings.relative_error)
+                    && error <= goal
+                {
+                    break Stop::RelativeError;
+                }
+                if Some(taken) == limit {
+                    break Stop::Samples;
+                }
+                if answer == Answer::Enough {
+                    break Stop::Time;
+                }
+            }
+        }
         let checkpoint = next_checkpoint(taken).min(limit.unwrap_or(u64::MAX));
-        let until = checkpoint.min(taken + engine.step());
-        truncated += engine.advance(&mut tally, until).truncated;
-        taken = until;
-        if taken == checkpoint {
-            reached = Some(first.relative_error(&tally));
-        }
-        let progress = Progress {
-            samples: taken * u64::from(REPLICAS),
-            next_checkpoint: next_checkpoint(taken).min(limit.unwrap_or(u64::MAX))
-                * u64::from(REPLICAS),
-            samples_limit: limit.map(|n| n * u64::from(REPLICAS)),
-            checkpoint: taken == checkpoint,
-            relative_error: reached,
-            relative_error_goal: settings.relative_error,
-        };
-        let answer = watch(&progress);
-        if answer == Answer::Interrupt {
-            break Stop::Interrupted;
-        }
-        if taken == checkpoint {
-            if let (Some(error), Some(goal)) = (reached, settings.relative_error)
-                && error <= goal
-            {
-                break Stop::RelativeError;
-            }
-            if Some(taken) == limit {
-                break Stop::Samples;
-            }
-            if answer == Answer::Enough {
-                break Stop::Time;
-            }
-        }
+        taken = checkpoint.min(taken + engine.step());
+        engine.advance(&mut state.walks, taken);
     };
 
-    let ledger = Ledger::keep(&engine, settings.estimator, taken);
-    let relative_error_max = first.relative_error(&tally);
+    let ledger = Ledger::keep(&engine, settings.estimator, taken, &mut state.books)?;
+    let tally = &state.walks;
+    let relative_error_max = first.relative_error(tally);
     // The scalar model beside the diffuse one has mirrors of its own.
     let mut warnings: Vec<String> = engine
         .passes
@@ -242,20 +277,21 @@ fn run_with<const N: usize>(
         warnings.extend(exact::singular(&engine.passes.main, &receivers));
     }
     warnings.extend(ledger.leak(scenes[0]));
+    let truncated: u64 = tally.replicas().map(|replica| replica.truncated).sum();
     if truncated > 0 {
         warnings.push(format!(
             "{truncated} walks were cut off after {LONGEST} reflections: what they still carried is missing"
         ));
     }
     let first = Results {
-        groups: first.groups(&tally),
+        groups: first.groups(tally),
         samples: taken * u64::from(REPLICAS),
         dof: REPLICAS - 1,
         representation,
         representation_reason: representation_reason(scene, settings),
         estimator: settings.estimator,
         estimator_reason: estimator_reason.into(),
-        shares: first.shares(&tally),
+        shares: first.shares(tally),
         allocation: allocation.clone(),
         complete: stop != Stop::Interrupted,
         stop,
@@ -264,12 +300,12 @@ fn run_with<const N: usize>(
         warnings,
     };
     let others = 1..scenes.len();
-    Together {
+    Ok(Together {
         others: others
-            .map(|variant| readings(variant).groups(&tally))
+            .map(|variant| readings(variant).groups(tally))
             .collect(),
         first,
-    }
+    })
 }
 
 /// What may lie for each sensor in mirrors that nothing looks into, and has not been met by chance yet.

@@ -4,6 +4,7 @@
 //! their means is the only source of standard errors, so an error stays honest for whatever correlates
 //! the walks inside a replica or the quantities that one walk feeds.
 
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
 
@@ -11,7 +12,7 @@ use thiserror::Error;
 pub const REPLICAS: u32 = 64;
 
 /// The sums of one replica.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Replica {
     /// Which replica.
     pub id: u32,
@@ -57,7 +58,7 @@ pub enum MergeError {
 }
 
 /// A set of replicas of one run. Joining two tallies is a union: no floating-point addition, so no order matters.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tally {
     replicas: BTreeMap<u32, Replica>,
 }
@@ -113,6 +114,34 @@ impl Tally {
     /// The replicas in ascending order of their ids, to be added to.
     pub fn replicas_mut(&mut self) -> impl Iterator<Item = &mut Replica> {
         self.replicas.values_mut()
+    }
+
+    /// Walks that the first replica has summed; all others have as many unless they were joined from different parts.
+    #[must_use]
+    pub fn points(&self) -> u64 {
+        self.replicas
+            .values()
+            .next()
+            .map_or(0, |first| first.points)
+    }
+
+    /// Gives `length` sums to each replica that has none yet.
+    ///
+    /// # Errors
+    /// If a replica has another number of them.
+    pub fn fit(&mut self, length: usize) -> Result<(), MergeError> {
+        for replica in self.replicas.values_mut() {
+            if replica.sums.is_empty() && replica.points == 0 {
+                replica.sums = vec![0.0; length];
+            } else if replica.sums.len() != length {
+                return Err(MergeError::Shape {
+                    id: replica.id,
+                    found: replica.sums.len(),
+                    expected: length,
+                });
+            }
+        }
+        Ok(())
     }
 
     /// A function of a replica's means in every replica, in ascending order of their ids.
