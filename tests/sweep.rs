@@ -1,8 +1,12 @@
 //! Studies: every variant says what a run of it alone would say, and differences are far better known than either side.
 
 use crate::cli::{Folder, ROOM, stderr};
+use crate::experiment::{s0, scene};
+use malus_estimator::{Answer, Estimate, run, run_together, serves};
+use malus_scene::{Scene, Settings};
 use std::collections::BTreeMap;
 use std::process::Output;
+use std::sync::{Arc, LazyLock};
 
 /// The room, glossy.
 fn folder(study: &str, files: &[(&str, &[u8])]) -> Folder {
@@ -231,4 +235,137 @@ fn a_study_says_which_variants_differ_and_which_key_matters() {
     let best = desk["ranking"][0]["variant"].as_str().unwrap();
     assert!(["005", "006"].contains(&best), "{best}");
     assert!(folder.text("out/desk-trade.svg").starts_with("<svg "));
+}
+
+/// A closed room of two materials and a small lamp, with the values that vary.
+fn room(a: f64, rho: f64, n: f64, exitance: f64) -> Scene {
+    scene(&format!(
+        "[[shape]]
+        kind = 'box'
+        min = [0, 0, 0]
+        max = [1, 1, 1]
+        inward = true
+        material = 'wall'
+        [[shape]]
+        kind = 'rectangle'
+        origin = [0, 0, 0]
+        u = [1, 0, 0]
+        v = [0, 1, 0]
+        material = 'floor'
+        [[shape]]
+        kind = 'sphere'
+        centre = [0.4, 0.6, 0.7]
+        radius = 0.1
+        subdivisions = 2
+        material = 'lamp'
+        [material.wall]
+        rho = 0.6
+        a = 0.2
+        [material.floor]
+        rho = {rho}
+        a = {a}
+        n = {n}
+        [material.lamp]
+        rho = 0.1
+        exitance = {exitance}
+        [[source]]
+        kind = 'point'
+        position = [0.7, 0.3, 0.8]
+        intensity = 0.05
+        [[sensor]]
+        name = 'board'
+        points = [[0.5, 0.05, 0.4]]
+        normal = [0, 1, 0]"
+    ))
+}
+
+/// One scene of [`room`] together with others: they do not lie on one another's optics, but walks serve all.
+fn varied() -> [Scene; 4] {
+    [
+        room(0.3, 0.5, 1.5, 3.0),
+        room(0.0, 0.7, 1.5, 2.0),
+        room(0.6, 0.2, 2.2, 4.0),
+        room(0.1, 0.5, 1.3, 3.0),
+    ]
+}
+
+/// The deviation of the last of the rooms, evaluated with the others, from itself alone by other numbers.
+pub fn deviation(rooms: &[Scene], seed: u64, samples: u64) -> f64 {
+    let settings = |seed| Settings {
+        seed,
+        samples: Some(samples),
+        relative_error: None,
+        ..rooms[0].settings.clone()
+    };
+    let scenes: Vec<&Scene> = rooms.iter().collect();
+    let together = run_together(&scenes, &settings(seed), None, &mut |_| Answer::Continue);
+    let last = together.others.last().unwrap();
+    let alone = run(
+        scenes[scenes.len() - 1],
+        &settings(seed + 1_000_000),
+        &mut |_| Answer::Continue,
+    );
+    let [one, other] = [&last[0], &alone.groups[0]].map(|group| s0(&group.readings[0]));
+    (one.0 - other.0) / one.1.hypot(other.1)
+}
+
+#[test]
+fn walks_serve_scenes_that_differ_in_numbers_of_their_surfaces_alone() {
+    let rooms = varied();
+    // Each has surfaces of its own here; a study shares them.
+    assert!(!serves(&[&rooms[0]], &rooms[1]));
+    let shared = rooms.map(|mut it| {
+        it.surfaces = Arc::clone(&SHARED.surfaces);
+        it
+    });
+    let [first, others @ ..] = &shared;
+    assert!(others.iter().all(|other| serves(&[first], other)));
+    // An ideal mirror where another variant has a white wall would leave neither good walks.
+    let mut mirror = room(1.0, 0.0, f64::INFINITY, 3.0);
+    let mut white = room(0.0, 0.95, 1.5, 3.0);
+    mirror.surfaces = Arc::clone(&SHARED.surfaces);
+    white.surfaces = Arc::clone(&SHARED.surfaces);
+    assert!(!serves(&[&mirror], &white) && serves(&[first], &white));
+}
+
+static SHARED: LazyLock<Scene> = LazyLock::new(|| room(0.3, 0.5, 1.5, 3.0));
+
+/// Σ z² over 48 seeds is χ² of 48 degrees of freedom; the mean of z has the standard deviation 1/√48. The test of the
+/// whole distribution over 400 seeds is in `examples/validate`.
+#[test]
+fn deviations_from_single_runs_are_those_of_chance() {
+    let rooms = varied();
+    let deviations: Vec<f64> = (0..48)
+        .map(|seed| deviation(&rooms, 1 + seed, 512))
+        .collect();
+    let count = deviations.len() as f64;
+    let mean = deviations.iter().sum::<f64>() / count;
+    let squares: f64 = deviations.iter().map(|z| z * z).sum();
+    assert!(mean.abs() < 4.5 / count.sqrt(), "mean of z: {mean}");
+    assert!(
+        (squares - count).abs() < 4.5 * (2.0 * count).sqrt(),
+        "Σ z² = {squares}"
+    );
+}
+
+#[test]
+fn a_difference_along_the_same_walks_is_ten_times_better_known_than_one_of_independent_runs() {
+    // Neighbours on the grid of a study: a tenth of the polish.
+    let rooms = [room(0.3, 0.5, 1.5, 3.0), room(0.4, 0.5, 1.5, 3.0)];
+    let settings = Settings {
+        samples: Some(8192),
+        relative_error: None,
+        ..rooms[0].settings.clone()
+    };
+    let scenes: Vec<&Scene> = rooms.iter().collect();
+    let together = run_together(&scenes, &settings, None, &mut |_| Answer::Continue);
+    let [one, other] = [&together.first.groups[0], &together.others[0][0]];
+    let pairs = one.replicates.mean.iter().zip(&other.replicates.mean);
+    let differences: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
+    let paired = Estimate::of(&differences).standard_error;
+    let independent = one.mean_standard_error.hypot(other.mean_standard_error);
+    assert!(
+        paired > 0.0 && 10.0 * paired < independent,
+        "{paired}, independent {independent}"
+    );
 }

@@ -312,11 +312,10 @@ mod tests {
             "material.\"Wall 1\".a=0",
         ]);
         let again = Run::told(&run.scene, &run.computing.words(), 128).expect("the same");
-        assert_eq!(
-            (again.words(), &again.scene),
-            (run.computing.words(), &run.scene)
-        );
-        assert_eq!(again.repeating(128), run.computing.repeating(128));
+        assert_eq!(again.scene, run.scene);
+        let (again, run) = (again.computing, run.computing);
+        assert_eq!(again.words(), run.words());
+        assert_eq!(again.repeating(128), run.repeating(128));
         let stops = [&again.samples, &again.seconds, &again.relative_error];
         assert_eq!(stops, [&Some("128".to_owned()), &None, &None]);
     }

@@ -57,7 +57,7 @@ fn join(
     let circumstances = Circumstances {
         seconds,
         threads,
-        repeat: asked.repeating(results.samples),
+        repeat: asked.computing.repeating(results.samples),
         warnings: [scene.warnings.as_slice(), &results.warnings].concat(),
     };
     let report = Report {

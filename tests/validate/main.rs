@@ -12,6 +12,7 @@ mod coverage;
 mod figure;
 mod fresnel;
 mod rooms;
+mod studies;
 
 /// One line of a table: an exact answer and what came out.
 struct Row {
@@ -84,5 +85,6 @@ fn main() {
     );
     figure::print();
     coverage::print();
+    studies::print();
     baseline::print();
 }

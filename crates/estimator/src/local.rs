@@ -283,14 +283,6 @@ impl Joining<'_> {
         let even = diffuse(vertex.normal);
         let mut steps: Vec<Step> = Vec::new();
         for (sensor, receiver) in self.receivers.iter().enumerate() {
-            let arrival = |direction, weight, steps| Arrival {
-                receiver,
-                vertex,
-                direction,
-                weight,
-                steps,
-                polarised: polarises,
-            };
             steps.clear();
             let way = straight(medium, vertex.position, vertex.normal, receiver, &mut steps);
             if let Some(way) = way {
@@ -307,11 +299,27 @@ impl Joining<'_> {
                             .rival
                             .weight(coupling, diffuse, self.allocation.launched(sensor));
                 }
-                add(sensor, &arrival(way.direction, weight, &steps));
+                let arrival = Arrival {
+                    receiver,
+                    vertex,
+                    direction: way.direction,
+                    weight,
+                    steps: &steps,
+                    polarised: polarises,
+                };
+                add(sensor, &arrival);
             }
             if vertex.rival.alone && self.techniques.mirrored && !receiver.enclosed {
                 self.mirrored(medium, vertex, depth, receiver, |way, steps| {
-                    add(sensor, &arrival(way.direction, way.coupling, steps));
+                    let arrival = Arrival {
+                        receiver,
+                        vertex,
+                        direction: way.direction,
+                        weight: way.coupling,
+                        steps,
+                        polarised: polarises,
+                    };
+                    add(sensor, &arrival);
                 });
             }
         }
