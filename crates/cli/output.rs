@@ -65,6 +65,15 @@ impl Directory {
         written.with_context(|| format!("{}: cannot be written", path.display()))
     }
 
+    /// A file that grows piece by piece in its place, and holds what there is at any moment.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn growing(&self, name: &str) -> Result<File> {
+        let path = self.0.join(name);
+        File::create(&path).with_context(|| format!("{}: cannot be written", path.display()))
+    }
+
     /// Removes a file, if it is there, and what a program left of it that was ended while it wrote.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! `malus run`: compute a scene, or a shard of it, and write what comes out.
 
 use crate::args;
+use crate::computing::quoted;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::job::Job;
@@ -12,7 +13,7 @@ use crate::slurm::Array;
 use crate::submit::Reach;
 use crate::summary::Circumstances;
 use crate::{merge, picture, shards, stop, submit};
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use malus_estimator::Shard;
 use malus_scene::{Scene, Settings};
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -32,7 +33,7 @@ pub enum End {
 /// # Errors
 /// Bad arguments, a bad scene, or a run that failed.
 pub fn run(command: &args::Run) -> Result<End, Failure> {
-    let threads = threads(command.threads.as_deref())?;
+    let threads = command.computing.threads()?;
     let interval = command.portion.interval().map_err(Failure::input)?;
     let scene = load(command)?;
     let settings = settings(command, &scene);
@@ -89,7 +90,7 @@ fn compute_whole(command: &args::Run, job: &Job, part: &mut Part) -> anyhow::Res
         seconds: part.head.seconds,
         threads: part.head.threads,
         complete,
-        repeat: command.repeating(results.samples),
+        repeat: command.computing.repeating(results.samples),
         warnings: [job.scene.warnings.as_slice(), &results.warnings].concat(),
     };
     let report = Report {
@@ -179,7 +180,7 @@ fn hand_in(command: &args::Run, scene: &Scene, settings: &Settings) -> Result<En
         count,
         options: command.cluster.sbatch.as_deref().unwrap_or_default(),
     };
-    let merge = format!("malus merge {}", args::quoted(&output.to_string_lossy()));
+    let merge = format!("malus merge {}", quoted(&output.to_string_lossy()));
     let end = submit::submit(&command.cluster, &array, &reach, &merge, command.quiet)?;
     if end == End::Complete && command.cluster.wait {
         merge::merge(&args::Merge {
@@ -236,49 +237,22 @@ fn head(command: &args::Run, scene: &Scene, settings: &Settings, shard: Option<S
         seconds: 0.0,
         threads: 1,
         scene: path.to_string_lossy().into_owned(),
-        words: command.words(),
+        words: command.computing.words(),
         pictures: !command.no_pictures,
     }
 }
 
 /// Loads the scene; errors name an option the way it was typed.
 pub fn load(command: &args::Run) -> Result<Scene, Failure> {
-    Scene::load(&command.scene, &command.overrides()).map_err(|error| {
-        let mut text = error.to_string();
-        for entry in command.keys() {
-            let as_set = format!("--set {}={}", entry.key, entry.value);
-            text = text.replace(&as_set, &format!("--{} {}", entry.option, entry.value));
-        }
-        Failure::input(anyhow!(text))
-    })
+    Scene::load(&command.scene, &command.computing.overrides())
+        .map_err(|error| command.computing.refused(&error))
 }
 
 /// How the scene is to be computed: its own settings with the stopping rules of the command line.
 pub fn settings(command: &args::Run, scene: &Scene) -> Settings {
     let mut settings = scene.settings.clone();
-    stop::narrow(&mut settings, &command.overrides());
+    stop::narrow(&mut settings, &command.computing.overrides());
     settings
-}
-
-/// More threads than any machine has cores: beyond, starting them is all that a run would do.
-const MOST_THREADS: usize = 1024;
-
-/// Number of threads asked for, or as many as there are cores.
-///
-/// # Errors
-/// What was asked for is no number of threads.
-pub fn threads(asked: Option<&str>) -> Result<usize, Failure> {
-    let Some(text) = asked else {
-        return Ok(std::thread::available_parallelism().map_or(1, usize::from));
-    };
-    text.parse()
-        .ok()
-        .filter(|count| (1..=MOST_THREADS).contains(count))
-        .ok_or_else(|| {
-            Failure::input(anyhow!(
-                "--threads {text}: must be a whole number from 1 to {MOST_THREADS}, found {text:?}"
-            ))
-        })
 }
 
 /// So many threads, ready to compute.

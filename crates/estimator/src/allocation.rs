@@ -7,6 +7,7 @@
 
 use crate::gather::{Aims, Observer, gather};
 use crate::local::local;
+use crate::medium::Medium;
 use crate::pass::{Channels, Effort, Passes};
 use crate::random::Stream;
 use crate::receiver::Receiver;
@@ -40,9 +41,9 @@ const RAY: f64 = 1.0;
 const JOIN: f64 = 0.2;
 const LOOK: f64 = 4.0;
 
-/// Walks from each sensor, relative to those from the emitters.
+/// Walks from each sensor, relative to those from the emitters, as the pilot of a run has found them.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Allocation {
+pub struct Allocation {
     parts: Vec<u32>,
 }
 
@@ -82,8 +83,12 @@ impl Allocation {
         let walks = (GATHERED / free.len().max(1) as u64).max(1);
         let pilot = Pilot {
             walks,
-            // The main model alone, and of that S0 alone: the walks are the same.
+            // The main model of the first variant alone, and of that S0 alone: the walks are the same.
             passes: Passes {
+                main: Medium {
+                    variations: &passes.main.variations[..1],
+                    ..passes.main
+                },
                 apart: None,
                 ..*passes
             },

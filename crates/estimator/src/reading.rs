@@ -3,7 +3,7 @@
 use crate::allocation::Allocation;
 use crate::pass::Channels;
 use crate::receiver::Receiver;
-use crate::results::{Group, Paired, Reading, Shares};
+use crate::results::{Group, Paired, Reading, Replicates, Shares};
 use crate::statistics::{Estimate, Means, Replica, Tally, degree_of_linear_polarisation};
 use malus_scene::Scene;
 
@@ -19,6 +19,8 @@ pub(crate) struct Readings<'a> {
     unmet: Vec<Unmet>,
     /// Whether sensors tell each other what they have met.
     shared: bool,
+    /// Which of so many variants is read.
+    variant: (usize, usize),
 }
 
 /// Light that a walk from a sensor meets by chance alone, off a mirror, and may not have met yet.
@@ -68,6 +70,7 @@ impl<'a> Readings<'a> {
         exact: &[[f64; N]],
         unmet: Vec<Unmet>,
         shared: bool,
+        variant: (usize, usize),
     ) -> Self {
         let padded = |stokes: &[f64; N]| {
             std::array::from_fn(|component| stokes.get(component).copied().unwrap_or(0.0))
@@ -80,14 +83,16 @@ impl<'a> Readings<'a> {
             exact: exact.iter().map(padded).collect(),
             unmet,
             shared,
+            variant,
         }
     }
 
     /// What walks from a sensor and walks from the emitters bring it, on average.
     fn parts(&self, means: &Means, sensor: usize, channel: usize) -> [f64; 2] {
-        let index = sensor * self.channels.count + channel;
+        let (variant, variants) = self.variant;
+        let index = (sensor * variants + variant) * self.channels.count + channel;
         let walks = self.allocation.walks(sensor, means.points());
-        let half = self.receivers.len() * self.channels.count;
+        let half = self.receivers.len() * variants * self.channels.count;
         [means.over(index, walks), means.at(half + index)]
     }
 
@@ -228,14 +233,30 @@ impl<'a> Readings<'a> {
         let variance = unmet.variance(walks.max(1.0));
         let widened = |error| widened(error, variance);
         let paired = |channel| Paired::new(tally, exact, channel, mean, widened);
+        let readings: Vec<Reading> = range
+            .clone()
+            .map(|s| self.reading(tally, s, hidden[s]))
+            .collect();
+        let s0 = |sensor: usize| readings[sensor - range.start].stokes[0];
+        let darkest = free
+            .iter()
+            .copied()
+            .min_by(|&a, &b| s0(a).total_cmp(&s0(b)));
+        let at_darkest =
+            |sensor: usize| tally.values(|means| self.at(means, sensor, 0) + self.exact[sensor][0]);
+        let means = |channel| tally.values(|means| mean(means, channel) + exact);
+        let replicates = Replicates {
+            mean: means(0),
+            min: darkest.map_or_else(Vec::new, at_darkest),
+            scalar: self.channels.scalar.map_or_else(Vec::new, means),
+        };
         Group {
-            readings: range
-                .map(|sensor| self.reading(tally, sensor, hidden[sensor]))
-                .collect(),
             mean: main.mean + exact,
             mean_standard_error: widened(main.standard_error),
             scalar: self.channels.scalar.map(paired),
             diffuse: self.channels.diffuse.map(paired),
+            replicates,
+            readings,
         }
     }
 
