@@ -10,7 +10,7 @@ use crate::gather::Aims;
 use crate::ledger::Ledger;
 use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
-use crate::reading::{Readings, Unmet};
+use crate::reading::{Readings, Unmet, padded};
 use crate::receiver::Receiver;
 use crate::results::{Answer, Group, Progress, Results, Stop};
 use crate::sight::Sight;
@@ -205,17 +205,15 @@ fn run_with<const N: usize>(
         None if techniques.gather => unmet(&passes, &emitters, &aims),
         None => vec![Unmet::default(); receivers.len()],
     };
-    let readings = |variant: usize| {
-        Readings::new(
-            scene,
-            channels,
-            &receivers,
-            &allocation,
-            &exact[variant],
-            unmet.clone(),
-            techniques.mirrored,
-            (variant, scenes.len()),
-        )
+    let readings = |variant: usize| Readings {
+        scene,
+        channels,
+        receivers: &receivers,
+        allocation: &allocation,
+        exact: exact[variant].iter().map(padded).collect(),
+        unmet: unmet.clone(),
+        shared: techniques.mirrored,
+        variant: (variant, scenes.len()),
     };
     let first = readings(0);
 
