@@ -58,7 +58,7 @@ fn join(
         seconds,
         threads,
         complete: results.complete,
-        repeat: asked.repeating(results.samples),
+        repeat: asked.computing.repeating(results.samples),
         warnings: [scene.warnings.as_slice(), &results.warnings].concat(),
     };
     let report = Report {

@@ -65,6 +65,15 @@ impl Directory {
         written.with_context(|| format!("{}: cannot be written", path.display()))
     }
 
+    /// A file that grows piece by piece in its place, and holds what there is at any moment.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn growing(&self, name: &str) -> Result<File> {
+        let path = self.0.join(name);
+        File::create(&path).with_context(|| format!("{}: cannot be written", path.display()))
+    }
+
     /// Removes a file, if it is there, and what a program left of it that was ended while it wrote.
     ///
     /// # Errors
@@ -75,9 +84,9 @@ impl Directory {
         removed(&path).with_context(|| format!("{}: cannot be removed", path.display()))
     }
 
-    /// Removes what a program left of a file that was ended while it wrote it.
+    /// Removes what a program left of files that was ended while it wrote them, where their names begin with `name`.
     pub fn tidy(&self, name: &str) {
-        let begun = format!(".{name}.");
+        let begun = format!(".{name}");
         for entry in fs::read_dir(&self.0).into_iter().flatten().flatten() {
             let found = entry.file_name();
             let found = found.to_string_lossy();

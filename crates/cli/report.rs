@@ -34,7 +34,7 @@ impl Report<'_> {
     ) -> Result<()> {
         let directory = self.directory;
         let digests: Vec<Digest> = results.groups.iter().map(Digest::of).collect();
-        let sensors = rows::sensors(scene, results)?;
+        let sensors = rows::sensors(scene, &results.groups)?;
         let grids = rows::grids(scene, &digests)?;
         let summary = summary::json(scene, settings, results, circumstances)?;
         directory.write("sensors.csv", &sensors)?;

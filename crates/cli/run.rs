@@ -1,6 +1,7 @@
 //! `malus run`: compute a scene, or a shard of it, and write what comes out.
 
 use crate::args;
+use crate::computing::quoted;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::job::Job;
@@ -12,9 +13,10 @@ use crate::slurm::Array;
 use crate::submit::Reach;
 use crate::summary::Circumstances;
 use crate::{merge, picture, shards, stop, submit};
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use malus_estimator::Shard;
 use malus_scene::{Scene, Settings};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::{Path, PathBuf};
 
 /// How a run ended without an error.
@@ -31,7 +33,7 @@ pub enum End {
 /// # Errors
 /// Bad arguments, a bad scene, or a run that failed.
 pub fn run(command: &args::Run) -> Result<End, Failure> {
-    let threads = threads(command)?;
+    let threads = command.computing.threads()?;
     let interval = command.portion.interval().map_err(Failure::input)?;
     let scene = load(command)?;
     let settings = settings(command, &scene);
@@ -39,7 +41,8 @@ pub fn run(command: &args::Run) -> Result<End, Failure> {
         return hand_in(command, &scene, &settings);
     }
     let shard = command.portion.shard(&settings).map_err(Failure::input)?;
-    let directory = Directory::prepare(&directory(command)).map_err(Failure::run)?;
+    let directory = Directory::prepare(&directory(command.output.as_deref(), &command.scene))
+        .map_err(Failure::run)?;
     let name = shard.map_or(CHECKPOINT.to_owned(), Part::name_of);
     let head = Head {
         threads,
@@ -50,11 +53,7 @@ pub fn run(command: &args::Run) -> Result<End, Failure> {
         .begin(head, &name, &directory)
         .map_err(Failure::input)?;
     warn(&scene.warnings);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .with_context(|| format!("cannot start {threads} threads"))
-        .map_err(Failure::run)?;
+    let pool = pool(threads)?;
     let job = Job {
         scene: &scene,
         settings: &settings,
@@ -91,7 +90,7 @@ fn compute_whole(command: &args::Run, job: &Job, part: &mut Part) -> anyhow::Res
         seconds: part.head.seconds,
         threads: part.head.threads,
         complete,
-        repeat: command.repeating(results.samples),
+        repeat: command.computing.repeating(results.samples),
         warnings: [job.scene.warnings.as_slice(), &results.warnings].concat(),
     };
     let report = Report {
@@ -152,7 +151,8 @@ fn hand_in(command: &args::Run, scene: &Scene, settings: &Settings) -> Result<En
     let goal = rounded_up(goal);
     let count = command.cluster.count().map_err(Failure::input)?;
     let head = head(command, scene, settings, None);
-    let output = std::path::absolute(directory(command)).map_err(|e| Failure::run(e.into()))?;
+    let output = std::path::absolute(directory(command.output.as_deref(), &command.scene))
+        .map_err(|e| Failure::run(e.into()))?;
     let directory = Directory::prepare(&output).map_err(Failure::run)?;
     shards::belong(&output, &head, count).map_err(Failure::input)?;
     warn(&scene.warnings);
@@ -180,7 +180,7 @@ fn hand_in(command: &args::Run, scene: &Scene, settings: &Settings) -> Result<En
         count,
         options: command.cluster.sbatch.as_deref().unwrap_or_default(),
     };
-    let merge = format!("malus merge {}", args::quoted(&output.to_string_lossy()));
+    let merge = format!("malus merge {}", quoted(&output.to_string_lossy()));
     let end = submit::submit(&command.cluster, &array, &reach, &merge, command.quiet)?;
     if end == End::Complete && command.cluster.wait {
         merge::merge(&args::Merge {
@@ -237,52 +237,40 @@ fn head(command: &args::Run, scene: &Scene, settings: &Settings, shard: Option<S
         seconds: 0.0,
         threads: 1,
         scene: path.to_string_lossy().into_owned(),
-        words: command.words(),
+        words: command.computing.words(),
         pictures: !command.no_pictures,
     }
 }
 
 /// Loads the scene; errors name an option the way it was typed.
 pub fn load(command: &args::Run) -> Result<Scene, Failure> {
-    Scene::load(&command.scene, &command.overrides()).map_err(|error| {
-        let mut text = error.to_string();
-        for entry in command.keys() {
-            let as_set = format!("--set {}={}", entry.key, entry.value);
-            text = text.replace(&as_set, &format!("--{} {}", entry.option, entry.value));
-        }
-        Failure::input(anyhow!(text))
-    })
+    Scene::load(&command.scene, &command.computing.overrides())
+        .map_err(|error| command.computing.refused(&error))
 }
 
 /// How the scene is to be computed: its own settings with the stopping rules of the command line.
 pub fn settings(command: &args::Run, scene: &Scene) -> Settings {
     let mut settings = scene.settings.clone();
-    stop::narrow(&mut settings, &command.overrides());
+    stop::narrow(&mut settings, &command.computing.overrides());
     settings
 }
 
-/// More threads than any machine has cores: beyond, starting them is all that a run would do.
-const MOST_THREADS: usize = 1024;
-
-/// Number of threads asked for, or as many as there are cores.
-fn threads(command: &args::Run) -> Result<usize, Failure> {
-    let Some(text) = &command.threads else {
-        return Ok(std::thread::available_parallelism().map_or(1, usize::from));
-    };
-    text.parse()
-        .ok()
-        .filter(|count| (1..=MOST_THREADS).contains(count))
-        .ok_or_else(|| {
-            Failure::input(anyhow!(
-                "--threads {text}: must be a whole number from 1 to {MOST_THREADS}, found {text:?}"
-            ))
-        })
+/// So many threads, ready to compute.
+///
+/// # Errors
+/// The system gives no threads.
+pub fn pool(threads: usize) -> Result<ThreadPool, Failure> {
+    ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .with_context(|| format!("cannot start {threads} threads"))
+        .map_err(Failure::run)
 }
 
-/// Where the results go.
-pub fn directory(command: &args::Run) -> PathBuf {
-    command.output.clone().unwrap_or_else(|| {
-        let stem = command.scene.file_stem().unwrap_or("scene".as_ref());
-        Path::new("results").join(stem)
-    })
+/// Where the results go: what was asked for, or a directory of the scene file's name.
+pub fn directory(asked: Option<&Path>, scene: &Path) -> PathBuf {
+    match asked {
+        Some(path) => path.to_owned(),
+        None => Path::new("results").join(scene.file_stem().unwrap_or("scene".as_ref())),
+    }
 }

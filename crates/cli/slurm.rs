@@ -1,6 +1,6 @@
 //! Slurm: arrays of shards, handed in and watched.
 
-use crate::args::quoted;
+use crate::computing::quoted;
 use crate::output::Directory;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::collections::BTreeSet;

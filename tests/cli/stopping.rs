@@ -188,24 +188,50 @@ fn a_limit_of_error_is_reached_and_tells_how_to_repeat_the_run() {
 }
 
 #[test]
-fn the_first_rule_that_is_reached_stops_the_run() {
+fn the_first_rule_that_is_reached_stops_the_run_in_any_mixture() {
     let folder = Folder::new(ROOM.as_bytes(), &[]);
-    folder.run(
-        "out",
-        &[
-            "--seconds",
-            "600",
-            "--samples",
-            "128",
-            "--relative-error",
-            "1e-9",
-        ],
-    );
+    let near = ["samples=128", "relative_error=0.2", "seconds=0.3"];
+    let far = [
+        "samples=1000000000000",
+        "relative_error=1e-9",
+        "seconds=600",
+    ];
+    let key = |rule: &str| rule.split('=').next().unwrap().to_owned();
+    for (first, rule) in near.iter().enumerate() {
+        for others in 0..4 {
+            let others = (0..3)
+                .filter(|&rule| rule != first)
+                .zip([others & 1, others >> 1]);
+            let others = others
+                .filter(|(_, given)| *given == 1)
+                .map(|(rule, _)| far[rule]);
+            let rules: Vec<String> = std::iter::once(*rule)
+                .chain(others)
+                .map(|rule| format!("--{}", rule.replace('_', "-")))
+                .collect();
+            let words: Vec<&str> = rules.iter().map(String::as_str).collect();
+            folder.run("out", &words);
+            let summary = folder.json("out/summary.json");
+            assert_eq!(
+                (&summary["stop"], &summary["complete"]),
+                (&key(rule).into(), &true.into()),
+                "{words:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn rules_of_the_scene_file_hold_together_until_one_is_given_on_the_command_line() {
+    let rules = "samples = 192\nrelative_error = 1e-9\nseconds = 600";
+    let folder = Folder::new(room_with("samples = 64", rules).as_bytes(), &[]);
+    folder.run("out", &[]);
+    assert_eq!(folder.json("out/summary.json")["samples"], 192);
+    // `samples` no longer stops the run, nor does the error of the file.
+    folder.run("out", &["--relative-error", "0.02"]);
     let summary = folder.json("out/summary.json");
-    assert_eq!(
-        (&summary["samples"], &summary["complete"]),
-        (&128.into(), &true.into())
-    );
+    assert_eq!(summary["stop"], "relative_error");
+    assert!(summary["samples"].as_u64().unwrap() > 192, "{summary}");
 }
 
 #[test]

@@ -20,7 +20,7 @@ const TASK: usize = 16;
 pub(crate) struct Engine<'a, const N: usize> {
     /// The walks.
     pub passes: Passes<'a>,
-    /// The sums at each sensor.
+    /// The sums of each variant at each sensor.
     pub channels: Channels,
     /// The sensors.
     pub receivers: &'a [Receiver],
@@ -47,7 +47,12 @@ impl<const N: usize> Engine<'_, N> {
     /// Sums of one kind of walk.
     #[must_use]
     pub(crate) fn length(&self) -> usize {
-        self.receivers.len() * self.channels.count
+        self.receivers.len() * self.width()
+    }
+
+    /// Sums of one kind of walk at one sensor.
+    fn width(&self) -> usize {
+        self.passes.main.variations.len() * self.channels.count
     }
 
     /// Walks a replica that make up one step.
@@ -112,7 +117,7 @@ impl<const N: usize> Engine<'_, N> {
         let stream = Stream::new(self.seed, replica.id);
         let taken = replica.points;
         let efforts: Vec<Effort> = replica.sums[..self.length()]
-            .par_chunks_mut(self.channels.count)
+            .par_chunks_mut(self.width())
             .zip(self.receivers)
             .enumerate()
             .with_min_len(TASK)

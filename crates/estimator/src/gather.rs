@@ -8,6 +8,7 @@ use crate::pass::{Channels, Effort, Passes};
 use crate::random::{Stream, Uniforms};
 use crate::receiver::Receiver;
 use crate::trace::{Path, Techniques, Walk};
+use crate::variation::Variation;
 use std::ops::Range;
 
 /// A sensor that walks are taken from.
@@ -21,7 +22,7 @@ pub(crate) struct Observer<'a> {
     pub launched: f64,
 }
 
-/// Adds the walks `range` of one sensor to its sums.
+/// Adds the walks `range` of one sensor to its sums, those of one variant after those of the other.
 pub(crate) fn gather<const N: usize>(
     passes: &Passes,
     channels: &Channels,
@@ -35,16 +36,17 @@ pub(crate) fn gather<const N: usize>(
         aims,
         launched,
     } = observer;
-    let materials = passes.main.materials;
     let techniques = Techniques {
         local: launched * passes.techniques.local,
         ..passes.techniques
     };
     let mut effort = Effort::default();
     let mut path = Path::default();
+    let variations = passes.main.variations;
+    let mut main: Vec<Gathering<N>> = Vec::with_capacity(variations.len());
+    let mut scalar: Vec<Gathering<1>> = Vec::new();
     for index in range {
         let uniforms = stream.walk(index);
-        let mut main = Gathering::<N>::new(receiver);
         let way = Way {
             techniques,
             medium: passes.main,
@@ -52,36 +54,69 @@ pub(crate) fn gather<const N: usize>(
             uniforms,
             aim: aims.main.as_ref(),
         };
+        restart(&mut main, variations, receiver);
+        if channels.along.is_some() {
+            restart(&mut scalar, variations, receiver);
+        }
+        effort += way.follow(&mut path, |path, part| {
+            read(&mut main, variations, path, part);
+            read(&mut scalar, variations, path, part);
+        });
+        for (gathering, sums) in main.iter().zip(sums.chunks_mut(channels.count)) {
+            for (sum, value) in sums.iter_mut().zip(gathering.sum()) {
+                *sum += value;
+            }
+            for (sum, value) in sums[channels.found..].iter_mut().zip(gathering.found()) {
+                *sum += value;
+            }
+        }
         if let Some(channel) = channels.along {
-            let mut scalar = Gathering::<1>::new(receiver);
-            effort += way.follow(&mut path, |path, part| {
-                main.read(path, part, materials);
-                scalar.read(path, part, materials);
-            });
-            sums[channel] += scalar.sum()[0];
-        } else {
-            effort += way.follow(&mut path, |path, part| main.read(path, part, materials));
-        }
-        for (sum, value) in sums.iter_mut().zip(main.sum()) {
-            *sum += value;
-        }
-        for (sum, value) in sums[channels.found..].iter_mut().zip(main.found()) {
-            *sum += value;
+            add(&scalar, sums, channels.count, channel);
         }
         if let (Some(medium), Some(channel)) = (passes.apart, channels.apart) {
-            let mut apart = Gathering::<1>::new(receiver);
             let way = Way {
                 medium,
                 aim: aims.apart.as_ref(),
                 ..way
             };
+            restart(&mut scalar, medium.variations, receiver);
             effort += way.follow(&mut path, |path, part| {
-                apart.read(path, part, medium.materials);
+                read(&mut scalar, medium.variations, path, part);
             });
-            sums[channel] += apart.sum()[0];
+            add(&scalar, sums, channels.count, channel);
         }
+        scalar.clear();
     }
     effort
+}
+
+/// Makes room for what the variants read of one more walk.
+fn restart<'r, const N: usize>(
+    gatherings: &mut Vec<Gathering<'r, N>>,
+    variations: &[Variation],
+    receiver: &'r Receiver,
+) {
+    gatherings.clear();
+    gatherings.extend(variations.iter().map(|_| Gathering::new(receiver)));
+}
+
+/// Reads a piece of a walk in every variant.
+fn read<const N: usize>(
+    gatherings: &mut [Gathering<N>],
+    variations: &[Variation],
+    path: &Path,
+    part: Part,
+) {
+    for (gathering, variation) in gatherings.iter_mut().zip(variations) {
+        gathering.read(path, part, variation);
+    }
+}
+
+/// Adds S0 of every variant to its `channel`, of `count` that each has.
+fn add(gatherings: &[Gathering<1>], sums: &mut [f64], count: usize, channel: usize) {
+    for (gathering, sums) in gatherings.iter().zip(sums.chunks_mut(count)) {
+        sums[channel] += gathering.sum()[0];
+    }
 }
 
 /// How the companions of one sensor's walks are aimed at small mirrors.

@@ -4,11 +4,11 @@
 //! aimed at one of these mirrors and follows the reflection as far as mirrors and panes lead. It competes with the walk itself
 //! by the balance heuristic, for what the sensor sees in them and no diffuse surface has had part in.
 
+use crate::cover::Cover;
 use crate::mirrors::{Mirrors, reflectance};
 use crate::receiver::Receiver;
 use glam::DVec3;
 use malus_geometry::Surfaces;
-use malus_scene::Material;
 use std::f64::consts::PI;
 
 /// Groups that the small mirrors are parted into, at most; neighbours in a file are neighbours in space as a rule.
@@ -45,8 +45,8 @@ pub(crate) struct Aim<'a> {
 
 impl Glints {
     /// The mirrors of a scene that none looks into.
-    pub(crate) fn new(surfaces: &Surfaces, materials: &[Material], mirrors: &Mirrors) -> Self {
-        let reflectances: Vec<f64> = materials.iter().map(|m| reflectance(&m.optics)).collect();
+    pub(crate) fn new(surfaces: &Surfaces, covers: &[Cover], mirrors: &Mirrors) -> Self {
+        let reflectances: Vec<f64> = covers.iter().map(reflectance).collect();
         let strength = |triangle: u32| {
             let area = surfaces.triangle(triangle).area();
             area * reflectances[surfaces.surface(triangle) as usize]

@@ -25,7 +25,7 @@ const BRANCH: u64 = u64::MAX;
 const SHARE: u64 = 64;
 
 /// Least and most walks a replica.
-const WALKS: [u64; 2] = [16, 4096];
+const WALKS: [u64; 2] = [4, 4096];
 
 /// Which sum holds what; those of the materials follow.
 const ESCAPED: usize = 0;
@@ -71,7 +71,7 @@ impl<'t> Ledger<'t> {
         });
         Ok(Self {
             tally,
-            emitted: medium.emitters.exposed_flux(),
+            emitted: medium.emitters.exposed_flux(medium.first()),
         })
     }
 
@@ -136,11 +136,12 @@ fn book<const N: usize>(passes: &Passes, stream: Stream, index: u64, sums: &mut 
     let Some(start) = medium.emitters.start(uniforms) else {
         return;
     };
-    let mut carrying = Carrying::<N>::new(&start);
+    let mut carrying = Carrying::<N>::new(&start, medium.first());
     let mut walk = Walk::from_emitter(*medium, Techniques::ALONE, uniforms, &start);
     let end = journey(&mut walk, &mut Path::default(), |vertex| {
-        sums[MATERIALS + vertex.material as usize] += carrying.absorbed(vertex, medium.materials);
-        carrying.follow(std::slice::from_ref(vertex), medium.materials, |_, _| {});
+        sums[MATERIALS + vertex.material as usize] +=
+            carrying.absorbed(vertex, &medium.first().materials);
+        carrying.follow(std::slice::from_ref(vertex), medium.first(), |_, _| {});
     });
     match end {
         End::Absorbed => {}
@@ -203,7 +204,7 @@ mod tests {
         std::fs::write(&path, toml).unwrap();
         let scene = Scene::load(&path, &[]).unwrap();
         let emitters = Emitters::new(&scene);
-        let modelled = Modelled::new(&scene, Model::Polarised);
+        let modelled = Modelled::alone(&scene, Model::Polarised);
         let passes = Passes {
             main: modelled.medium(&scene, &emitters),
             apart: None,
@@ -211,7 +212,7 @@ mod tests {
         };
         let mut sums = vec![0.0; MATERIALS + scene.materials.len()];
         book::<3>(&passes, Stream::new(1, 0), 0, &mut sums);
-        let flux = emitters.exposed_flux();
+        let flux = emitters.exposed_flux(passes.main.first());
         assert!(flux > 0.0 && (sums[TRUNCATED] / flux - 1.0).abs() < 1e-9);
         assert!(sums[ESCAPED] <= 0.0 && sums[MATERIALS..].iter().sum::<f64>() < 1e-9 * flux);
     }

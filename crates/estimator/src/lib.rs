@@ -7,6 +7,7 @@
 mod allocation;
 mod beam;
 mod choose;
+mod cover;
 mod direct;
 mod direction;
 mod emitters;
@@ -33,11 +34,15 @@ mod sight;
 mod state;
 mod statistics;
 mod trace;
+mod variation;
 
+pub use allocation::Allocation;
+pub use choose::unseen;
 pub use picture::{Film, Picture, expose};
 pub use results::{
-    Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Results, Shares, Stop,
+    Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Replicates, Results, Shares, Stop,
 };
-pub use run::{resume, run};
+pub use run::{Together, resume, run, run_together};
 pub use state::{NoShard, Shard, State, StateError};
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};
+pub use variation::serves;

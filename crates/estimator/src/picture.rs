@@ -129,7 +129,7 @@ fn take<const N: usize>(
     watch: &mut dyn FnMut(f64, &Film) -> Answer,
 ) {
     let emitters = Emitters::new(scene);
-    let modelled = Modelled::new(scene, settings.model);
+    let modelled = Modelled::alone(scene, settings.model);
     let passes = Passes {
         main: modelled.medium(scene, &emitters),
         apart: None,
@@ -205,7 +205,7 @@ fn pixel<const N: usize>(
             aim: None,
         };
         way.follow(&mut path, |path, part| {
-            gathering.read(path, part, passes.main.materials);
+            gathering.read(path, part, passes.main.first());
         });
         let read = gathering.sum();
         squares += read[0] * read[0];

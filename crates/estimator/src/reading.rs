@@ -3,22 +3,29 @@
 use crate::allocation::Allocation;
 use crate::pass::Channels;
 use crate::receiver::Receiver;
-use crate::results::{Group, Paired, Reading, Shares};
+use crate::results::{Group, Paired, Reading, Replicates, Shares};
 use crate::statistics::{Estimate, Means, Replica, Tally, degree_of_linear_polarisation};
 use malus_scene::Scene;
 
+/// Components, padded to four.
+pub(crate) fn padded<const N: usize>(stokes: &[f64; N]) -> [f64; 4] {
+    std::array::from_fn(|component| stokes.get(component).copied().unwrap_or(0.0))
+}
+
 /// How the sums of a run are read.
 pub(crate) struct Readings<'a> {
-    scene: &'a Scene,
-    channels: Channels,
-    receivers: &'a [Receiver],
-    allocation: &'a Allocation,
+    pub scene: &'a Scene,
+    pub channels: Channels,
+    pub receivers: &'a [Receiver],
+    pub allocation: &'a Allocation,
     /// What is known without chance, one Stokes vector a sensor; S0 is the same in every model.
-    exact: Vec<[f64; 4]>,
+    pub exact: Vec<[f64; 4]>,
     /// One entry a sensor.
-    unmet: Vec<Unmet>,
+    pub unmet: Vec<Unmet>,
     /// Whether sensors tell each other what they have met.
-    shared: bool,
+    pub shared: bool,
+    /// Which of so many variants is read.
+    pub variant: (usize, usize),
 }
 
 /// Light that a walk from a sensor meets by chance alone, off a mirror, and may not have met yet.
@@ -58,36 +65,12 @@ fn widened(standard_error: f64, variance: f64) -> f64 {
 }
 
 impl<'a> Readings<'a> {
-    /// Readings of the scene's sensors, of which the `exact` part is known.
-    #[must_use]
-    pub(crate) fn new<const N: usize>(
-        scene: &'a Scene,
-        channels: Channels,
-        receivers: &'a [Receiver],
-        allocation: &'a Allocation,
-        exact: &[[f64; N]],
-        unmet: Vec<Unmet>,
-        shared: bool,
-    ) -> Self {
-        let padded = |stokes: &[f64; N]| {
-            std::array::from_fn(|component| stokes.get(component).copied().unwrap_or(0.0))
-        };
-        Self {
-            scene,
-            channels,
-            receivers,
-            allocation,
-            exact: exact.iter().map(padded).collect(),
-            unmet,
-            shared,
-        }
-    }
-
     /// What walks from a sensor and walks from the emitters bring it, on average.
     fn parts(&self, means: &Means, sensor: usize, channel: usize) -> [f64; 2] {
-        let index = sensor * self.channels.count + channel;
+        let (variant, variants) = self.variant;
+        let index = (sensor * variants + variant) * self.channels.count + channel;
         let walks = self.allocation.walks(sensor, means.points());
-        let half = self.receivers.len() * self.channels.count;
+        let half = self.receivers.len() * variants * self.channels.count;
         [means.over(index, walks), means.at(half + index)]
     }
 
@@ -127,7 +110,6 @@ impl<'a> Readings<'a> {
 
     /// Variance at each sensor that the spread of its own replicas does not tell.
     fn hidden(&self, tally: &Tally) -> Vec<f64> {
-        let free = |&sensor: &usize| !self.receivers[sensor].enclosed;
         let walks: Vec<f64> = (0..self.receivers.len())
             .map(|sensor| self.walks(tally, sensor))
             .collect();
@@ -140,13 +122,12 @@ impl<'a> Readings<'a> {
             tally.estimate(read).standard_error.powi(2)
         };
         let met: Vec<f64> = (0..walks.len()).map(met).collect();
-        let (mut all, mut variance) = (0.0, 0.0);
-        for sensor in (0..walks.len()).filter(free) {
-            all += walks[sensor];
-            variance += met[sensor] * walks[sensor] * walks[sensor];
-        }
-        // Of one walk, on average over all of them.
-        let of_one = if all > 0.0 { variance / all } else { 0.0 };
+        let free: Vec<usize> = (0..walks.len())
+            .filter(|&sensor| !self.receivers[sensor].enclosed)
+            .collect();
+        let all: f64 = free.iter().map(|&s| walks[s]).sum();
+        let of_one: f64 = free.iter().map(|&s| met[s] * walks[s]).sum();
+        let of_one = of_one / free.len().max(1) as f64;
         (0..walks.len())
             .map(|sensor| {
                 let shared = of_one / walks[sensor].max(1.0);
@@ -230,14 +211,30 @@ impl<'a> Readings<'a> {
         let variance = unmet.variance(walks.max(1.0));
         let widened = |error| widened(error, variance);
         let paired = |channel| Paired::new(tally, exact, channel, mean, widened);
+        let readings: Vec<Reading> = range
+            .clone()
+            .map(|s| self.reading(tally, s, hidden[s]))
+            .collect();
+        let s0 = |sensor: usize| readings[sensor - range.start].stokes[0];
+        let darkest = free
+            .iter()
+            .copied()
+            .min_by(|&a, &b| s0(a).total_cmp(&s0(b)));
+        let at_darkest =
+            |sensor: usize| tally.values(|means| self.at(means, sensor, 0) + self.exact[sensor][0]);
+        let means = |channel| tally.values(|means| mean(means, channel) + exact);
+        let replicates = Replicates {
+            mean: means(0),
+            min: darkest.map_or_else(Vec::new, at_darkest),
+            scalar: self.channels.scalar.map_or_else(Vec::new, means),
+        };
         Group {
-            readings: range
-                .map(|sensor| self.reading(tally, sensor, hidden[sensor]))
-                .collect(),
             mean: main.mean + exact,
             mean_standard_error: widened(main.standard_error),
             scalar: self.channels.scalar.map(paired),
             diffuse: self.channels.diffuse.map(paired),
+            replicates,
+            readings,
         }
     }
 

@@ -10,18 +10,19 @@ use crate::gather::Aims;
 use crate::ledger::Ledger;
 use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
-use crate::reading::{Readings, Unmet};
+use crate::reading::{Readings, Unmet, padded};
 use crate::receiver::Receiver;
-use crate::results::{Answer, Progress, Results, Stop};
+use crate::results::{Answer, Group, Progress, Results, Stop};
 use crate::sight::Sight;
 use crate::state::{Shard, State, StateError};
 use crate::statistics::REPLICAS;
 use crate::trace::LONGEST;
+use crate::variation::{Variation, covering};
 use malus_optics::Representation;
 use malus_scene::{Estimator, Model, Scene, Settings};
 
 /// Walks a replica before the first checkpoint: fewer would not tell an error from luck.
-const FIRST_CHECKPOINT: u64 = 16;
+const FIRST_CHECKPOINT: u64 = 8;
 
 /// The first checkpoint after `taken` walks a replica: four to the octave.
 fn next_checkpoint(taken: u64) -> u64 {
@@ -64,11 +65,68 @@ pub fn resume(
     state: &mut State,
     watch: &mut dyn FnMut(&Progress, &State) -> Answer,
 ) -> Result<Results, StateError> {
-    let representation = representation_of(scene, settings);
-    match representation {
-        Representation::Intensity => run_with::<1>(scene, settings, representation, state, watch),
-        Representation::Linear => run_with::<3>(scene, settings, representation, state, watch),
-        Representation::Full => run_with::<4>(scene, settings, representation, state, watch),
+    let alone = Ensemble {
+        scenes: &[scene],
+        covering: scene,
+        like: None,
+    };
+    Ok(alone.run(settings, state, watch)?.first)
+}
+
+/// What several scenes give that were evaluated along the same walks.
+#[derive(Debug)]
+pub struct Together {
+    /// The first scene.
+    pub first: Results,
+    /// The sensor groups of the others.
+    pub others: Vec<Vec<Group>>,
+}
+
+/// Evaluates `scenes`, one at least, all of which the same walks [serve](crate::serves), along these.
+///
+/// Stopping rules hold for the first of them. Walks are shared out between the sensors as in `like`, where it is given, so
+/// that the two are paired. Everything else is as in [`run`].
+pub fn run_together(
+    scenes: &[&Scene],
+    settings: &Settings,
+    like: Option<&Allocation>,
+    watch: &mut dyn FnMut(&Progress) -> Answer,
+) -> Together {
+    let covering = covering(scenes);
+    let ensemble = Ensemble {
+        scenes,
+        covering: &covering,
+        like,
+    };
+    let mut state = State::new(Shard::WHOLE);
+    let together = ensemble.run(settings, &mut state, &mut |progress, _| watch(progress));
+    together.expect("a state without walks fits every scene")
+}
+
+/// Scenes that are evaluated along the same walks.
+struct Ensemble<'a> {
+    scenes: &'a [&'a Scene],
+    /// The scene by which emitters are chosen.
+    covering: &'a Scene,
+    /// How walks are shared out; `None`: a pilot finds it.
+    like: Option<&'a Allocation>,
+}
+
+impl Ensemble<'_> {
+    fn run(
+        &self,
+        settings: &Settings,
+        state: &mut State,
+        watch: &mut dyn FnMut(&Progress, &State) -> Answer,
+    ) -> Result<Together, StateError> {
+        let representation = representation_of(self.covering, settings);
+        match representation {
+            Representation::Intensity => {
+                run_with::<1>(self, settings, representation, state, watch)
+            }
+            Representation::Linear => run_with::<3>(self, settings, representation, state, watch),
+            Representation::Full => run_with::<4>(self, settings, representation, state, watch),
+        }
     }
 }
 
@@ -81,24 +139,30 @@ pub(crate) fn representation_of(scene: &Scene, settings: &Settings) -> Represent
 }
 
 fn run_with<const N: usize>(
-    scene: &Scene,
+    ensemble: &Ensemble,
     settings: &Settings,
     representation: Representation,
     state: &mut State,
     watch: &mut dyn FnMut(&Progress, &State) -> Answer,
-) -> Result<Results, StateError> {
+) -> Result<Together, StateError> {
     let limit = settings
         .samples
         .map(|samples| samples.div_ceil(u64::from(REPLICAS)).max(1));
     state.check(limit)?;
-    let channels = Channels::new(scene, settings, representation);
+    let Ensemble {
+        scenes,
+        covering: scene,
+        like,
+    } = *ensemble;
+    let mirrors = scenes.iter().any(|it| has_mirrors(&it.materials));
+    let channels = Channels::new(mirrors, settings, representation);
     let emitters = Emitters::new(scene);
     let mut receivers = Receiver::all(scene);
     let (techniques, estimator_reason) = techniques(settings.estimator, &receivers);
-    let main = Modelled::new(scene, settings.model);
+    let main = Modelled::new(scenes, scene, settings.model);
     let apart = channels.apart.map(|_| match settings.model {
-        Model::Diffuse => Modelled::new(scene, Model::Scalar),
-        Model::Polarised | Model::Scalar => Modelled::new(scene, Model::Diffuse),
+        Model::Diffuse => Modelled::new(scenes, scene, Model::Scalar),
+        Model::Polarised | Model::Scalar => Modelled::new(scenes, scene, Model::Diffuse),
     });
     let passes = Passes {
         main: main.medium(scene, &emitters),
@@ -112,17 +176,20 @@ fn run_with<const N: usize>(
     let sight = techniques
         .gather
         .then(|| Sight::new(&scene.surfaces, &emitters, &mut receivers));
-    let exact = match cells {
+    let exact = |variation: &Variation| match cells {
         // Counted like all other light.
         Some(_) => vec![[0.0; N]; receivers.len()],
-        None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref()),
+        None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref(), variation),
     };
+    let exact: Vec<Vec<[f64; N]>> = passes.main.variations.iter().map(exact).collect();
     let aims = Aims::all(&passes, &receivers);
-    let allocation = if techniques.gather && techniques.local > 0.0 {
-        let exact = |sensor: usize| exact[sensor][0];
-        Allocation::piloted(&passes, &receivers, &aims, exact, settings.seed)
-    } else {
-        Allocation::even(receivers.len())
+    let allocation = match like {
+        Some(like) => like.clone(),
+        None if techniques.gather && techniques.local > 0.0 => {
+            let exact = |sensor: usize| exact[0][sensor][0];
+            Allocation::piloted(&passes, &receivers, &aims, exact, settings.seed)
+        }
+        None => Allocation::even(receivers.len()),
     };
     let engine = Engine::<N> {
         passes,
@@ -138,16 +205,17 @@ fn run_with<const N: usize>(
         None if techniques.gather => unmet(&passes, &emitters, &aims),
         None => vec![Unmet::default(); receivers.len()],
     };
-    let shared = techniques.mirrored;
-    let readings = Readings::new(
+    let readings = |variant: usize| Readings {
         scene,
         channels,
-        &receivers,
-        &allocation,
-        &exact,
-        unmet,
-        shared,
-    );
+        receivers: &receivers,
+        allocation: &allocation,
+        exact: exact[variant].iter().map(padded).collect(),
+        unmet: unmet.clone(),
+        shared: techniques.mirrored,
+        variant: (variant, scenes.len()),
+    };
+    let first = readings(0);
 
     engine.fit(&mut state.walks)?;
     let mut taken = state.walks.points();
@@ -157,7 +225,7 @@ fn run_with<const N: usize>(
         if taken > 0 {
             let checkpoint = taken == next_checkpoint(taken - 1) || Some(taken) == limit;
             if checkpoint {
-                reached = Some(readings.relative_error(&state.walks));
+                reached = Some(first.relative_error(&state.walks));
             }
             let progress = Progress {
                 samples: taken * u64::from(REPLICAS),
@@ -193,7 +261,7 @@ fn run_with<const N: usize>(
 
     let ledger = Ledger::keep(&engine, settings.estimator, taken, &mut state.books)?;
     let tally = &state.walks;
-    let relative_error_max = readings.relative_error(tally);
+    let relative_error_max = first.relative_error(tally);
     // The scalar model beside the diffuse one has mirrors of its own.
     let mut warnings: Vec<String> = engine
         .passes
@@ -206,28 +274,36 @@ fn run_with<const N: usize>(
     } else {
         warnings.extend(exact::singular(&engine.passes.main, &receivers));
     }
-    warnings.extend(readings.dark(&tally));
-    warnings.extend(ledger.leak(scene));
+    warnings.extend(first.dark(tally));
+    warnings.extend(ledger.leak(scenes[0]));
     let truncated: u64 = tally.replicas().map(|replica| replica.truncated).sum();
     if truncated > 0 {
         warnings.push(format!(
             "{truncated} walks were cut off after {LONGEST} reflections: what they still carried is missing"
         ));
     }
-    Ok(Results {
-        groups: readings.groups(tally),
+    let first = Results {
+        groups: first.groups(tally),
         samples: taken * u64::from(REPLICAS),
         dof: REPLICAS - 1,
         representation,
         representation_reason: representation_reason(scene, settings),
         estimator: settings.estimator,
         estimator_reason: estimator_reason.into(),
-        shares: readings.shares(tally),
+        shares: first.shares(tally),
+        allocation: allocation.clone(),
         complete: stop != Stop::Interrupted,
         stop,
         relative_error_max,
         energy: ledger.energy(engine.passes.main.materials),
         warnings,
+    };
+    let others = 1..scenes.len();
+    Ok(Together {
+        others: others
+            .map(|variant| readings(variant).groups(tally))
+            .collect(),
+        first,
     })
 }
 
@@ -282,6 +358,6 @@ mod tests {
                 taken
             })
             .collect();
-        assert_eq!(checkpoints, [16, 20, 24, 28, 32, 40, 48, 56, 64, 80]);
+        assert_eq!(checkpoints, [8, 10, 12, 14, 16, 20, 24, 28, 32, 40]);
     }
 }

@@ -144,15 +144,27 @@ impl Tally {
         Ok(())
     }
 
-    /// Estimate of any function of a replica's means that is linear in them; `value` is given the means.
-    ///
-    /// The standard error is √(Σ (vᵣ − v̄)² / (R (R − 1))), 0 for fewer than two replicas.
-    pub fn estimate(&self, value: impl Fn(&Means) -> f64) -> Estimate {
-        let values: Vec<f64> = self
-            .replicas
+    /// A function of a replica's means in every replica, in ascending order of their ids.
+    pub fn values(&self, value: impl Fn(&Means) -> f64) -> Vec<f64> {
+        self.replicas
             .values()
             .map(|replica| value(&Means(replica)))
-            .collect();
+            .collect()
+    }
+
+    /// Estimate of any function of a replica's means that is linear in them; `value` is given the means.
+    ///
+    /// The standard error is that of [`Estimate::of`].
+    pub fn estimate(&self, value: impl Fn(&Means) -> f64) -> Estimate {
+        Estimate::of(&self.values(value))
+    }
+}
+
+impl Estimate {
+    /// The mean of what independent replicas gave, with the standard error √(Σ (vᵣ − v̄)² / (R (R − 1))), 0 for fewer than
+    /// two replicas.
+    #[must_use]
+    pub fn of(values: &[f64]) -> Self {
         let count = values.len() as f64;
         let mean = values.iter().sum::<f64>() / count;
         let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
@@ -161,7 +173,7 @@ impl Tally {
         } else {
             (squares / (count * (count - 1.0))).sqrt()
         };
-        Estimate {
+        Self {
             mean,
             standard_error,
         }

@@ -14,6 +14,7 @@ use crate::mirrors::Viewer;
 use crate::random::{Purpose, Uniforms};
 use crate::receiver::Receiver;
 use crate::sight::Seen;
+use crate::variation::Origin;
 use glam::DVec3;
 use malus_geometry::Hit;
 use malus_optics::Reflection;
@@ -62,6 +63,8 @@ pub(crate) enum Event {
 /// A light seen from a point of a walk.
 #[derive(Debug, Clone)]
 pub(crate) struct Connection<'a> {
+    /// Who sends it.
+    pub origin: Origin,
     /// State of the light.
     pub state: State<'a>,
     /// Unit vector from the point towards it, or towards the first mirror.
@@ -89,7 +92,7 @@ pub(crate) struct Vertex {
     pub arriving: DVec3,
     /// Direction in which it goes on.
     pub onward: DVec3,
-    /// Mirror-like reflection, or what a pane lets through where the walk goes on like that.
+    /// Mirror-like reflection, or what a pane lets through where the walk goes on like that, in the first variant.
     pub matrix: Reflection,
     /// Share of the light that the surface emits towards the walk for which this walk answers: 0 if it emits none.
     pub emission: f64,
@@ -324,7 +327,7 @@ impl<'a> Walk<'a> {
             Role::Launched(launched) => launched.go(hit.distance),
             Role::Looking(lookout) => lookout.go(hit.distance),
         }
-        if odds.diffuse > 0.0 && meeting.material.optics.scattering() > 0.0 {
+        if odds.diffuse > 0.0 && meeting.cover.scatters() {
             self.join(path, &mut vertex, &meeting, odds.diffuse);
         }
         let [lobe, u, v, _] = self.uniforms.at(self.depth, Purpose::Scatter);
@@ -486,6 +489,7 @@ impl<'a> Walk<'a> {
                     .passage(viewer.point, site.from, toward, &mut path.steps)
         {
             path.connections.push(Connection {
+                origin: site.origin,
                 state: site.state,
                 toward,
                 leaving: -toward,
@@ -508,13 +512,19 @@ impl<'a> Walk<'a> {
             self.depth,
             |drawn, inverse| {
                 let first = path.steps.len();
-                let found = self.medium.drawn(&viewer, &target, &drawn, &mut path.steps);
-                let Some((way, probability)) = found else {
+                let found = self.medium.drawn(&viewer, &target, drawn, &mut path.steps);
+                let Some((way, chain)) = found else {
                     path.steps.truncate(first);
                     return;
                 };
+                // Before a single mirror no ray was drawn that the light may differ from.
+                let probability = match chain[..] {
+                    [_] => 1.0 / inverse,
+                    _ => mirrors.probability(&viewer, &target, &chain),
+                };
                 let (toward, leaving) = (way.start, -way.arriving);
                 path.connections.push(Connection {
+                    origin: site.origin,
                     state: site.state,
                     toward,
                     leaving,
@@ -546,11 +556,10 @@ struct Look {
 
 /// Probability with which a walk that came from `direction` would be scattered where this one was met.
 fn bound(meeting: &Meeting, direction: DVec3) -> f64 {
-    let optics = &meeting.material.optics;
-    if optics.polarises_scattering() {
+    if meeting.cover.polarises_scattering() {
         let (cos, sin2) = malus_optics::angle_of_incidence(direction, meeting.normal);
-        optics.diffuse_bound(cos, sin2)
+        meeting.cover.diffuse(cos, sin2)
     } else {
-        optics.diffuse_bound(meeting.angle.0, meeting.angle.1)
+        meeting.cover.diffuse(meeting.angle.0, meeting.angle.1)
     }
 }
