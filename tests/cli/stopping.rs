@@ -91,7 +91,9 @@ fn a_run_interrupted_while_it_takes_a_picture_is_marked() {
 name = "endless"
 position = [1, 1, 1]
 look_at = [3, 2, 1]
-samples = 1000000
+samples = 8192
+width = 512
+height = 512
 "#;
     let folder = Folder::new((ROOM.to_owned() + camera).as_bytes(), &[]);
     let output = interrupted(&folder, &["run", "room.toml", "-o", "out"], "-INT");

@@ -21,6 +21,9 @@ use std::collections::BTreeMap;
 /// Walks that a step takes in all, so that a watcher is asked several times a second.
 const STEP: u64 = 1 << 17;
 
+/// Least number of pixels in a step.
+const LEAST: u64 = 16;
+
 /// A picture in polarised light: the radiance Stokes vector in every pixel, in unit/(m²·sr).
 ///
 /// In each pixel **d** is the direction in which light travels, towards the viewer, and **x** the camera's right vector
@@ -39,7 +42,7 @@ pub struct Picture {
     pub complete: bool,
 }
 
-/// What a camera has taken so far, in bands of whole rows from the top.
+/// What a camera has taken so far, in bands of pixels, row by row from the top.
 ///
 /// As with [`State`](crate::State), joining two is a union, and what is there depends on nothing but scene, settings and
 /// camera.
@@ -66,9 +69,8 @@ impl Film {
     /// The picture of the camera that the film was in, black where nothing was taken yet.
     #[must_use]
     pub fn developed(&self, camera: &Camera) -> Picture {
-        let row = camera.width as usize;
-        let count = row * camera.height as usize;
-        let pixels = rows(camera) * row;
+        let count = camera.width as usize * camera.height as usize;
+        let pixels = band(camera);
         let complete = self.bands.len() == count.div_ceil(pixels);
         let mut stokes = Vec::with_capacity(count);
         let (mut sum, mut variance) = (0.0, 0.0);
@@ -93,9 +95,10 @@ impl Film {
     }
 }
 
-/// Rows of a band, so that a watcher is asked several times a second.
-fn rows(camera: &Camera) -> usize {
-    (STEP / (camera.samples.saturating_mul(u64::from(camera.width))).max(1)).max(1) as usize
+/// Pixels of a band, so that a watcher is asked several times a second: fewer than a row of them where each takes many
+/// walks, but enough for the threads.
+fn band(camera: &Camera) -> usize {
+    (STEP / camera.samples.max(1)).max(LEAST) as usize
 }
 
 /// Takes a picture of a scene, or a shard of it: `camera.samples` walks in each pixel, spread evenly over it. What is on
@@ -137,9 +140,8 @@ fn take<const N: usize>(
     };
     // Beyond the replicas of the sensors, so that no walk is taken twice.
     let stream = Stream::new(settings.seed, REPLICAS);
-    let row = camera.width as usize;
-    let count = row * camera.height as usize;
-    let pixels = rows(camera) * row;
+    let count = camera.width as usize * camera.height as usize;
+    let pixels = band(camera);
     let owned: Vec<u32> = (0..count.div_ceil(pixels) as u32)
         .filter(|&number| shard.owns(number))
         .collect();
