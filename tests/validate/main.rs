@@ -13,6 +13,7 @@ mod figure;
 mod fresnel;
 mod rooms;
 mod stopping;
+mod studies;
 
 /// One line of a table: an exact answer and what came out.
 struct Row {
@@ -90,5 +91,6 @@ fn main() {
     figure::print();
     coverage::print();
     stopping::print();
+    studies::print();
     baseline::print();
 }

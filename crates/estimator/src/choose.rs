@@ -92,7 +92,7 @@ pub(crate) fn erratic<const N: usize>(engine: &Engine<N>, estimator: Estimator) 
 #[must_use]
 pub fn unseen(scene: &Scene, settings: &Settings) -> Vec<String> {
     let emitters = Emitters::new(scene);
-    let modelled = Modelled::new(scene, settings.model);
+    let modelled = Modelled::alone(scene, settings.model);
     blind_spots(&modelled.medium(scene, &emitters), settings.estimator)
 }
 

@@ -23,6 +23,8 @@ pub(crate) enum Purpose {
     Launch = 3,
     /// The chain of mirrors in which a vertex looks for an emitter.
     Reflect = 4,
+    /// The small mirror that the companion of a walk from a sensor is aimed at.
+    Glint = 5,
 }
 
 const PURPOSES: u64 = 8;
