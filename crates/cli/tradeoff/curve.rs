@@ -44,6 +44,13 @@ impl Curve {
             .filter(|outcome| outcome.rms_error >= self.limit)
     }
 
+    /// The first outcome that is finer than the reference can tell.
+    pub fn untold(&self) -> Option<&Outcome> {
+        self.outcomes
+            .iter()
+            .find(|outcome| outcome.rms_error < self.limit)
+    }
+
     /// Power of the time that the error goes with at the end of the curve, −½ where it is chance alone; from two points on.
     pub fn slope(&self) -> Option<f64> {
         let logarithms: Vec<[f64; 2]> = self
@@ -196,6 +203,7 @@ pub mod tests {
         let mut curve = curve(&[[1.0, 0.08], [4.0, 0.02]]);
         curve.limit = 0.04;
         assert_eq!(curve.points().count(), 1);
+        assert_eq!(curve.untold().map(|outcome| outcome.samples), Some(256));
         let reach = curve.reach(0.04).unwrap();
         assert!((reach.seconds - 2.0).abs() < 1e-12 && !reach.is_foretold);
         // Foretold from the last point that can be told, not from the one that cannot.
