@@ -22,7 +22,7 @@ use malus_optics::Representation;
 use malus_scene::{Estimator, Model, Scene, Settings};
 
 /// Walks a replica before the first checkpoint: fewer would not tell an error from luck.
-const FIRST_CHECKPOINT: u64 = 16;
+const FIRST_CHECKPOINT: u64 = 8;
 
 /// The first checkpoint after `taken` walks a replica: four to the octave.
 fn next_checkpoint(taken: u64) -> u64 {
@@ -358,6 +358,6 @@ mod tests {
                 taken
             })
             .collect();
-        assert_eq!(checkpoints, [16, 20, 24, 28, 32, 40, 48, 56, 64, 80]);
+        assert_eq!(checkpoints, [8, 10, 12, 14, 16, 20, 24, 28, 32, 40]);
     }
 }
