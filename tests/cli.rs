@@ -6,6 +6,9 @@ mod printed;
 mod results;
 mod shards;
 mod stopping;
+#[cfg(unix)]
+mod submitting;
+mod tradeoff;
 
 pub use bad_input::{assert_told, refusal};
 use std::path::{Path, PathBuf};

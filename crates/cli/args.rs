@@ -22,6 +22,7 @@ Examples:
   malus check office.toml                         what is in it, and what is wrong
   malus run office.toml                           compute it; results go to results/office
   malus run office.toml --relative-error 0.005    the same, to 0.5 % everywhere
+  malus tradeoff office.toml                      how long which error takes
   malus analyse results/office/view.tiff          how a camera's picture is polarised
 
 Exit status: 0 done, 1 the run failed, 2 bad arguments or a bad scene, 130 interrupted.";
@@ -81,6 +82,19 @@ Examples:
 
 Exit status: 0 the scene can be run (there may be warnings), 2 bad arguments or a bad scene.";
 
+const TRADEOFF_EXAMPLES: &str = "\
+Examples:
+  malus tradeoff office.toml
+  malus tradeoff office.toml --budget 60 -o results/tradeoff
+  malus tradeoff office.toml --set run.compare=[]    without the models computed beside
+
+Results: tradeoff.csv (one row a setting and number of samples), tradeoff.svg (error against time), and the \
+cheapest setting for 3 %, 1 %, 0.3 % and 0.1 % on stdout. Errors are against a reference of this command's own; \
+the longer the budget, the smaller the errors that it can tell apart.
+
+Exit status: 0 done, 1 nothing could be measured, 2 bad arguments or a bad scene, 130 interrupted (Ctrl-C once: \
+what is measured is written; twice: at once, without results).";
+
 const ANALYSE_EXAMPLES: &str = "\
 Examples:
   malus analyse view.tiff                  how much is polarised, and along which axis
@@ -108,6 +122,9 @@ pub enum Command {
     /// Read a scene and say what was understood and what is wrong with it; compute nothing
     #[command(after_help = CHECK_EXAMPLES)]
     Check(Check),
+    /// Measure error against time on a scene: which estimator, representation and number of samples to take
+    #[command(after_help = TRADEOFF_EXAMPLES)]
+    Tradeoff(Tradeoff),
     /// Look at a camera's picture through a linear polarising filter, and at how its light is polarised
     #[command(after_help = ANALYSE_EXAMPLES)]
     Analyse(Analyse),
@@ -211,6 +228,38 @@ pub struct Check {
     /// Put a value in place of the scene file's, by its dotted path, e.g. material.floor.a=0.3 (may be repeated)
     #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
     pub set: Vec<Override>,
+}
+
+/// `malus tradeoff`.
+#[derive(Args, Debug)]
+pub struct Tradeoff {
+    /// Scene file; its stopping rules are not used
+    #[arg(value_name = "SCENE.toml")]
+    pub scene: PathBuf,
+
+    /// Directory of the results [default: results/<scene file's name without .toml>]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// Time that the whole command may take [default: 300]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub budget: Option<String>,
+
+    /// Most threads to compute with [default: all cores]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub threads: Option<String>,
+
+    /// Put a value in place of the scene file's, by its dotted path, e.g. material.floor.a=0.3 (may be repeated)
+    #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
+    pub set: Vec<Override>,
+
+    /// Draw no diagram
+    #[arg(long)]
+    pub no_pictures: bool,
+
+    /// Show no progress and no table; warnings and errors stay
+    #[arg(short, long)]
+    pub quiet: bool,
 }
 
 /// `malus analyse`.

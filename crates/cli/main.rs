@@ -46,6 +46,7 @@ mod sweep;
 mod table;
 mod tick;
 mod trade;
+mod tradeoff;
 mod variants;
 
 use args::{Arguments, Command};
@@ -58,6 +59,7 @@ fn main() -> ExitCode {
         Command::Sweep(command) => sweep::sweep(&command),
         Command::Merge(command) => merge::merge(&command).map(|()| run::End::Complete),
         Command::Analyse(command) => analyse::analyse(&command).map(|()| run::End::Complete),
+        Command::Tradeoff(command) => tradeoff::tradeoff(&command),
         Command::Check(command) => check::check(&command).map(|()| run::End::Complete),
     };
     match end {

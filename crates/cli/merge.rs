@@ -57,6 +57,7 @@ fn join(
     let circumstances = Circumstances {
         seconds,
         threads,
+        complete: results.complete,
         repeat: asked.computing.repeating(results.samples),
         warnings: [scene.warnings.as_slice(), &results.warnings].concat(),
     };

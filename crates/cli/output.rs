@@ -84,9 +84,9 @@ impl Directory {
         removed(&path).with_context(|| format!("{}: cannot be removed", path.display()))
     }
 
-    /// Removes what a program left of a file that was ended while it wrote it.
+    /// Removes what a program left of files that was ended while it wrote them, where their names begin with `name`.
     pub fn tidy(&self, name: &str) {
-        let begun = format!(".{name}.");
+        let begun = format!(".{name}");
         for entry in fs::read_dir(&self.0).into_iter().flatten().flatten() {
             let found = entry.file_name();
             let found = found.to_string_lossy();

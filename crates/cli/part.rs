@@ -4,7 +4,7 @@
 //! all that stands before, 16 bytes.
 
 use crate::output::Directory;
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use anyhow::{Context, Error, Result, anyhow, bail, ensure};
 use malus_estimator::{Film, Shard, State};
 use malus_scene::Fingerprint;
 use serde::{Deserialize, Serialize};
@@ -16,6 +16,13 @@ use std::path::Path;
 
 /// First line of a file; the number rises whenever what follows it is laid out anew.
 const FORM: &str = "malus state 1\n";
+
+/// The number in it.
+const FORM_NUMBER: u32 = 1;
+
+/// What is said of a file that is not as it was written.
+const DAMAGED: &str =
+    "is damaged: its checksum is not that of its content; remove it, and compute it again";
 
 /// Beginning of the first line of files of any form.
 const ANY_FORM: &str = "malus state ";
@@ -160,11 +167,12 @@ pub fn write<'f>(
         let mut summed = Summed {
             file: &mut *file,
             sum: SipHasher13::new(),
+            failure: None,
         };
         summed.write_all(FORM.as_bytes())?;
-        postcard::to_io(head, &mut summed)?;
-        postcard::to_io(state, &mut summed)?;
-        postcard::to_io(&films, &mut summed)?;
+        summed.put(head)?;
+        summed.put(state)?;
+        summed.put(&films)?;
         let checksum = summed.sum.finish128().as_bytes();
         Ok(file.write_all(&checksum)?)
     })
@@ -174,13 +182,32 @@ pub fn write<'f>(
 struct Summed<'w, W> {
     file: &'w mut W,
     sum: SipHasher13,
+    /// Why the file could not be written, which postcard does not tell.
+    failure: Option<std::io::Error>,
+}
+
+impl<W: Write> Summed<'_, W> {
+    fn put(&mut self, value: &impl Serialize) -> Result<()> {
+        match postcard::to_io(value, &mut *self) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(self.failure.take().map_or(error.into(), Error::from)),
+        }
+    }
 }
 
 impl<W: Write> Write for Summed<'_, W> {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        let written = self.file.write(bytes)?;
-        self.sum.write(&bytes[..written]);
-        Ok(written)
+        match self.file.write(bytes) {
+            Ok(written) => {
+                self.sum.write(&bytes[..written]);
+                Ok(written)
+            }
+            Err(error) => {
+                let kind = error.kind();
+                self.failure = Some(error);
+                Err(kind.into())
+            }
+        }
     }
 
     fn flush(&mut self) -> std::io::Result<()> {
@@ -191,15 +218,22 @@ impl<W: Write> Write for Summed<'_, W> {
 /// The part that the bytes of a file hold.
 fn parsed(bytes: &[u8]) -> Result<Part> {
     if !bytes.starts_with(FORM.as_bytes()) {
-        let first = bytes.split(|&byte| byte == b'\n').next();
-        let first = String::from_utf8_lossy(first.unwrap_or_default());
-        if let Some(form) = first.strip_prefix(ANY_FORM) {
-            bail!("is of form {form:?}, which this version of malus does not read");
+        let form = bytes.strip_prefix(ANY_FORM.as_bytes());
+        let Some(form) = form else {
+            bail!("is no state of a run, as malus run writes it");
+        };
+        let form = form.split(|&byte| byte == b'\n').next().unwrap_or_default();
+        let form = str::from_utf8(form)
+            .ok()
+            .and_then(|form| form.parse::<u32>().ok());
+        match form {
+            Some(form) if form != FORM_NUMBER => {
+                bail!("is of form {form}, this version of malus reads form {FORM_NUMBER}")
+            }
+            _ => bail!(DAMAGED),
         }
-        bail!("is no state of a run, as malus run writes it");
     }
-    const DAMAGED: &str =
-        "is damaged: its checksum is not that of its content; remove it, and compute it again";
+    "is damaged: its checksum is not that of its content; remove it, and compute it again";
     let split = bytes.len().checked_sub(CHECKSUM).context(DAMAGED)?;
     let (content, checksum) = bytes.split_at(split);
     let mut sum = SipHasher13::new();
@@ -210,4 +244,51 @@ fn parsed(bytes: &[u8]) -> Result<Part> {
     let (state, body) = postcard::take_from_bytes(body).context(DAMAGED)?;
     let films = postcard::from_bytes(body).context(DAMAGED)?;
     Ok(Part { head, state, films })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A disk with so many bytes left.
+    struct Disk(usize);
+
+    impl Write for Disk {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            if self.0 == 0 {
+                return Err(std::io::ErrorKind::StorageFull.into());
+            }
+            let written = bytes.len().min(self.0);
+            self.0 -= written;
+            Ok(written)
+        }
+
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_full_disk_is_told_as_such() {
+        let mut summed = Summed {
+            file: &mut Disk(100),
+            sum: SipHasher13::new(),
+            failure: None,
+        };
+        let state = State::new(Shard::WHOLE);
+        let error = summed.put(&state).expect_err("no room for 64 replicas");
+        let error = error
+            .downcast_ref::<std::io::Error>()
+            .map(std::io::Error::kind);
+        assert_eq!(error, Some(std::io::ErrorKind::StorageFull));
+    }
+
+    #[test]
+    fn names_of_shards_line_up() {
+        let name = Part::name_of("3/8".parse().expect("a shard"));
+        assert_eq!(name, "shard-03-of-08.malus");
+        assert!(Part::is_shard(Path::new("a/shard-03-of-08.malus")));
+        assert!(!Part::is_shard(Path::new("a/.shard-03-of-08.malus.7.part")));
+        assert!(!Part::is_shard(Path::new("a/shard-3.log")));
+    }
 }

@@ -55,9 +55,11 @@ impl Portion {
     /// The file is damaged, or of another run.
     pub fn begin(&self, head: Head, name: &str, directory: &Directory) -> Result<Part> {
         let path = directory.path().join(name);
-        directory.tidy(name);
+        let whole = name == CHECKPOINT;
+        // Results may have been written when a run was ended; shards of others may be written now.
+        directory.tidy(if self.resume && whole { "" } else { name });
         if !(self.resume && path.exists()) {
-            if name == CHECKPOINT && path.exists() {
+            if whole && path.exists() {
                 warn(&[format!(
                     "{}: an earlier run was set aside there; this one begins anew, --resume would go on with it",
                     path.display()

@@ -13,9 +13,10 @@ use crate::slurm::Array;
 use crate::submit::Reach;
 use crate::summary::Circumstances;
 use crate::{merge, picture, shards, stop, submit};
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use malus_estimator::Shard;
 use malus_scene::{Scene, Settings};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::{Path, PathBuf};
 
 /// How a run ended without an error.
@@ -32,7 +33,7 @@ pub enum End {
 /// # Errors
 /// Bad arguments, a bad scene, or a run that failed.
 pub fn run(command: &args::Run) -> Result<End, Failure> {
-    let threads = command.computing.threads()?;
+    let threads = threads(command.computing.threads.as_deref())?;
     let interval = command.portion.interval().map_err(Failure::input)?;
     let scene = load(command)?;
     let settings = settings(command, &scene);
@@ -40,7 +41,8 @@ pub fn run(command: &args::Run) -> Result<End, Failure> {
         return hand_in(command, &scene, &settings);
     }
     let shard = command.portion.shard(&settings).map_err(Failure::input)?;
-    let directory = Directory::prepare(&directory(command)).map_err(Failure::run)?;
+    let directory = Directory::prepare(&directory(command.output.as_deref(), &command.scene))
+        .map_err(Failure::run)?;
     let name = shard.map_or(CHECKPOINT.to_owned(), Part::name_of);
     let head = Head {
         threads,
@@ -51,7 +53,7 @@ pub fn run(command: &args::Run) -> Result<End, Failure> {
         .begin(head, &name, &directory)
         .map_err(Failure::input)?;
     warn(&scene.warnings);
-    let pool = pool(threads).map_err(Failure::run)?;
+    let pool = pool(threads)?;
     let job = Job {
         scene: &scene,
         settings: &settings,
@@ -75,6 +77,7 @@ fn compute_whole(command: &args::Run, job: &Job, part: &mut Part) -> anyhow::Res
     let mut complete = results.complete;
     for index in pictured(part, job.scene) {
         if job.interrupt.asked() {
+            complete = false;
             break;
         }
         job.shoot(part, index)?;
@@ -86,6 +89,7 @@ fn compute_whole(command: &args::Run, job: &Job, part: &mut Part) -> anyhow::Res
     let circumstances = Circumstances {
         seconds: part.head.seconds,
         threads: part.head.threads,
+        complete,
         repeat: command.computing.repeating(results.samples),
         warnings: [job.scene.warnings.as_slice(), &results.warnings].concat(),
     };
@@ -147,7 +151,8 @@ fn hand_in(command: &args::Run, scene: &Scene, settings: &Settings) -> Result<En
     let goal = rounded_up(goal);
     let count = command.cluster.count().map_err(Failure::input)?;
     let head = head(command, scene, settings, None);
-    let output = std::path::absolute(directory(command)).map_err(|e| Failure::run(e.into()))?;
+    let output = std::path::absolute(directory(command.output.as_deref(), &command.scene))
+        .map_err(|e| Failure::run(e.into()))?;
     let directory = Directory::prepare(&output).map_err(Failure::run)?;
     shards::belong(&output, &head, count).map_err(Failure::input)?;
     warn(&scene.warnings);
@@ -250,18 +255,43 @@ pub fn settings(command: &args::Run, scene: &Scene) -> Settings {
     settings
 }
 
-/// Threads to compute with.
-pub fn pool(threads: usize) -> anyhow::Result<rayon::ThreadPool> {
-    rayon::ThreadPoolBuilder::new()
+/// More threads than any machine has cores: beyond, starting them is all that a run would do.
+const MOST_THREADS: usize = 1024;
+
+/// Number of threads asked for, or as many as there are cores.
+///
+/// # Errors
+/// What was asked for is no number of threads.
+pub fn threads(asked: Option<&str>) -> Result<usize, Failure> {
+    let Some(text) = asked else {
+        return Ok(std::thread::available_parallelism().map_or(1, usize::from));
+    };
+    text.parse()
+        .ok()
+        .filter(|count| (1..=MOST_THREADS).contains(count))
+        .ok_or_else(|| {
+            Failure::input(anyhow!(
+                "--threads {text}: must be a whole number from 1 to {MOST_THREADS}, found {text:?}"
+            ))
+        })
+}
+
+/// So many threads, ready to compute.
+///
+/// # Errors
+/// The system gives no threads.
+pub fn pool(threads: usize) -> Result<ThreadPool, Failure> {
+    ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .with_context(|| format!("cannot start {threads} threads"))
+        .map_err(Failure::run)
 }
 
-/// Where the results go.
-pub fn directory(command: &args::Run) -> PathBuf {
-    command.output.clone().unwrap_or_else(|| {
-        let stem = command.scene.file_stem().unwrap_or("scene".as_ref());
-        Path::new("results").join(stem)
-    })
+/// Where the results go: what was asked for, or a directory of the scene file's name.
+pub fn directory(asked: Option<&Path>, scene: &Path) -> PathBuf {
+    match asked {
+        Some(path) => path.to_owned(),
+        None => Path::new("results").join(scene.file_stem().unwrap_or("scene".as_ref())),
+    }
 }

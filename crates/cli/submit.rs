@@ -12,8 +12,8 @@ use malus_estimator::Shard;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Time between two looks at the queue.
-const POLL: Duration = Duration::from_secs(5);
+/// Time between the first two looks at the queue, and the longest; each is longer than the one before by half.
+const POLL: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)];
 
 /// Time within which the user's wish to end is heeded.
 const NAP: Duration = Duration::from_millis(200);
@@ -180,7 +180,7 @@ impl Watch<'_> {
         let started = Instant::now();
         let mut reporter = Reporter::new(quiet, None);
         let mut silent = 0;
-        let mut looked = Instant::now();
+        let [mut pause, longest] = POLL;
         loop {
             let reaches: Vec<Reach> = (1..=self.array.count).map(self.reach).collect();
             let finished = reaches.iter().filter(|reach| reach.finished).count();
@@ -191,7 +191,8 @@ impl Watch<'_> {
             let share = reaches.iter().map(|reach| reach.share).sum::<f64>() / reaches.len() as f64;
             let name = format!("{finished} of {} shards finished", reaches.len());
             reporter.show_share(&name, share, started.elapsed().as_secs_f64());
-            while looked.elapsed() < POLL {
+            let looked = Instant::now();
+            while looked.elapsed() < pause {
                 if interrupt.asked() {
                     reporter.finish();
                     warn(&[format!(
@@ -202,7 +203,7 @@ impl Watch<'_> {
                 }
                 std::thread::sleep(NAP);
             }
-            looked = Instant::now();
+            pause = (pause * 3 / 2).min(longest);
             match self.advance() {
                 Ok(shards) => {
                     silent = 0;

@@ -90,7 +90,7 @@ fn summary(folder: &Folder, name: &str) -> serde_json::Value {
 }
 
 #[track_caller]
-fn assert_same(folder: &Folder, one: &str, other: &str) {
+pub fn assert_same(folder: &Folder, one: &str, other: &str) {
     let [one_files, other_files] = [one, other].map(|name| files(folder, name));
     let names = |files: &[(String, Vec<u8>)]| -> Vec<String> {
         files.iter().map(|file| file.0.clone()).collect()
@@ -103,13 +103,13 @@ fn assert_same(folder: &Folder, one: &str, other: &str) {
 }
 
 #[track_caller]
-fn assert_done(output: &Output) {
+pub fn assert_done(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
 }
 
 /// Computes shards of `room.toml` into one directory.
 #[track_caller]
-fn shards(folder: &Folder, name: &str, shards: &[&str], words: &[&str]) {
+pub fn shards(folder: &Folder, name: &str, shards: &[&str], words: &[&str]) {
     for shard in shards {
         folder.run(name, &[&["--shard", shard], words].concat());
     }
@@ -235,41 +235,51 @@ fn a_scene_that_has_moved_is_given_anew() {
     assert_same(&folder, "whole", "out");
 }
 
-/// Kills a run again and again, and lets it go on each time until it ends by itself.
+/// Starts a run so often, and kills it each time at some moment after it has set itself aside anew; then lets it end by
+/// itself. Gives how often it was killed: less where it was over before.
 #[cfg(unix)]
-fn killed(folder: &Folder, words: &[&str], pauses_ms: &[u64]) -> usize {
-    let mut killed = 0;
-    for pause in pauses_ms.iter().cycle() {
-        let mut child = folder
-            .command(words)
-            .stdout(std::process::Stdio::null())
-            .stderr(std::process::Stdio::null())
-            .spawn()
-            .unwrap();
-        std::thread::sleep(std::time::Duration::from_millis(*pause));
-        if let Some(status) = child.try_wait().unwrap() {
-            assert_eq!(status.code(), Some(0));
-            return killed;
+#[track_caller]
+fn killed(folder: &Folder, words: &[&str], state: &str, times: u32) -> u32 {
+    let written = || {
+        std::fs::metadata(folder.path(state))
+            .and_then(|it| it.modified())
+            .ok()
+    };
+    let start = || {
+        let mut command = folder.command(words);
+        let silent = std::process::Stdio::null;
+        command.stdout(silent()).stderr(silent()).spawn().unwrap()
+    };
+    for kill in 0..times {
+        let before = written();
+        let mut child = start();
+        while written().is_none_or(|now| Some(now) == before) {
+            if let Some(status) = child.try_wait().unwrap() {
+                assert_eq!(status.code(), Some(0));
+                return kill;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(1));
         }
+        // Between two checkpoints, or in the middle of one.
+        std::thread::sleep(std::time::Duration::from_millis(u64::from(7 * kill % 40)));
         // SIGKILL.
         child.kill().unwrap();
         child.wait().unwrap();
-        killed += 1;
-        assert!(killed < 100, "it comes to no end");
     }
-    unreachable!("pauses go round and round")
+    assert_eq!(start().wait().unwrap().code(), Some(0));
+    times
 }
 
 #[cfg(unix)]
 #[test]
 fn a_run_that_is_killed_goes_on_to_the_same_bytes() {
     let folder = Folder::new(FURNISHED.as_bytes(), &[]);
-    // So many samples that a run takes a second or more, and a stop that is decided by what is summed.
+    // A stop that is decided by what is summed.
     let words = ["run", "room.toml", "--relative-error", "0.02", "-o"];
     assert_done(&folder.malus(&[&words[..], &["whole"]].concat()));
     let words = [&words[..], &["out", "--resume", "--checkpoint", "0.02"]].concat();
-    let times = killed(&folder, &words, &[310, 170, 450, 230, 890, 1500]);
-    assert!(times > 0, "the run was over too soon to be killed");
+    let times = killed(&folder, &words, "out/checkpoint.malus", 6);
+    assert!(times > 2, "the run was over too soon to be killed");
     assert_same(&folder, "whole", "out");
     let left: Vec<_> = std::fs::read_dir(folder.path("out"))
         .unwrap()
@@ -283,7 +293,7 @@ fn a_run_that_is_killed_goes_on_to_the_same_bytes() {
 #[test]
 fn a_shard_that_is_killed_goes_on_to_the_same_bytes() {
     let folder = Folder::new(FURNISHED.as_bytes(), &[]);
-    let words = ["--samples", "16384"];
+    let words = ["--samples", "8192"];
     shards(&folder, "out", &["2/2"], &words);
     let killing = [
         "run",
@@ -296,12 +306,9 @@ fn a_shard_that_is_killed_goes_on_to_the_same_bytes() {
         "--checkpoint",
         "0.02",
     ];
-    let times = killed(
-        &folder,
-        &[&killing[..], &words].concat(),
-        &[330, 210, 650, 1500],
-    );
-    assert!(times > 0, "the shard was over too soon to be killed");
+    let words_of_shard = [&killing[..], &words].concat();
+    let times = killed(&folder, &words_of_shard, "out/shard-01-of-02.malus", 6);
+    assert!(times > 2, "the shard was over too soon to be killed");
     assert_done(&folder.malus(&["merge", "out"]));
     folder.run("whole", &words);
     assert_same(&folder, "whole", "out");
@@ -311,14 +318,18 @@ fn a_shard_that_is_killed_goes_on_to_the_same_bytes() {
 #[test]
 fn an_interrupted_run_goes_on_to_the_same_bytes() {
     let folder = Folder::new(FURNISHED.as_bytes(), &[]);
-    let words = ["run", "room.toml", "--samples", "16384", "-o"];
+    let words = ["run", "room.toml", "--samples", "8192", "-o"];
     let child = folder
         .command(&[&words[..], &["out"]].concat())
         .stdout(std::process::Stdio::null())
         .stderr(std::process::Stdio::piped())
         .spawn()
         .unwrap();
-    std::thread::sleep(std::time::Duration::from_millis(400));
+    // The directory is made right before the first walk.
+    while !folder.path("out").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    std::thread::sleep(std::time::Duration::from_millis(200));
     let signalled = std::process::Command::new("kill")
         .args(["-TERM", &child.id().to_string()])
         .status();
@@ -344,8 +355,8 @@ fn an_interrupted_run_goes_on_to_the_same_bytes() {
         "{}",
         stderr(&again)
     );
-    folder.run("whole", &["--samples", "16384"]);
-    folder.run("out", &["--samples", "16384", "--resume"]);
+    folder.run("whole", &["--samples", "8192"]);
+    folder.run("out", &["--samples", "8192", "--resume"]);
     assert_same(&folder, "whole", "out");
 }
 

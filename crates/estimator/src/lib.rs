@@ -37,6 +37,7 @@ mod trace;
 mod variation;
 
 pub use allocation::Allocation;
+pub use choose::unseen;
 pub use picture::{Film, Picture, expose};
 pub use results::{
     Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Replicates, Results, Shares, Stop,

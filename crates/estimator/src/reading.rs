@@ -132,7 +132,6 @@ impl<'a> Readings<'a> {
 
     /// Variance at each sensor that the spread of its own replicas does not tell.
     fn hidden(&self, tally: &Tally) -> Vec<f64> {
-        let free = |&sensor: &usize| !self.receivers[sensor].enclosed;
         let walks: Vec<f64> = (0..self.receivers.len())
             .map(|sensor| self.walks(tally, sensor))
             .collect();
@@ -145,13 +144,12 @@ impl<'a> Readings<'a> {
             tally.estimate(read).standard_error.powi(2)
         };
         let met: Vec<f64> = (0..walks.len()).map(met).collect();
-        let (mut all, mut variance) = (0.0, 0.0);
-        for sensor in (0..walks.len()).filter(free) {
-            all += walks[sensor];
-            variance += met[sensor] * walks[sensor] * walks[sensor];
-        }
-        // Of one walk, on average over all of them.
-        let of_one = if all > 0.0 { variance / all } else { 0.0 };
+        let free: Vec<usize> = (0..walks.len())
+            .filter(|&sensor| !self.receivers[sensor].enclosed)
+            .collect();
+        let all: f64 = free.iter().map(|&s| walks[s]).sum();
+        let of_one: f64 = free.iter().map(|&s| met[s] * walks[s]).sum();
+        let of_one = of_one / free.len().max(1) as f64;
         (0..walks.len())
             .map(|sensor| {
                 let shared = of_one / walks[sensor].max(1.0);
@@ -167,7 +165,8 @@ impl<'a> Readings<'a> {
         estimate
     }
 
-    /// Largest standard error of S0 as a share of max(S0, 10⁻³ · mean S0) over the free sensors.
+    /// Largest standard error of S0 as a share of max(S0, 10⁻³ · mean S0) over the free sensors; 0 where no light has
+    /// reached any of them, since there is no share of nothing.
     #[must_use]
     pub(crate) fn relative_error(&self, tally: &Tally) -> f64 {
         let hidden = self.hidden(tally);
@@ -176,10 +175,28 @@ impl<'a> Readings<'a> {
             .map(|sensor| self.s0(tally, sensor, hidden[sensor]))
             .collect();
         let mean = free.iter().map(|e| e.mean).sum::<f64>() / free.len().max(1) as f64;
+        if mean <= 0.0 {
+            return 0.0;
+        }
         free.iter()
             .filter(|e| e.standard_error > 0.0)
             .map(|e| e.standard_error / e.mean.max(1e-3 * mean))
             .fold(0.0, f64::max)
+    }
+
+    /// Says if no walk has brought light to any of the free sensors.
+    #[must_use]
+    pub(crate) fn dark(&self, tally: &Tally) -> Option<String> {
+        let mut free = (0..self.receivers.len())
+            .filter(|&sensor| !self.receivers[sensor].enclosed)
+            .map(|sensor| self.s0(tally, sensor, 0.0).mean)
+            .peekable();
+        free.peek()?;
+        free.all(|s0| s0 <= 0.0).then(|| {
+            "no light has reached any sensor point: is a lamp inside a closed solid or behind a wall, or does it face away? \
+             Surfaces emit on the side of their normals only"
+                .into()
+        })
     }
 
     /// Every reading, by sensor group.

@@ -276,6 +276,7 @@ fn run_with<const N: usize>(
     } else {
         warnings.extend(exact::singular(&engine.passes.main, &receivers));
     }
+    warnings.extend(first.dark(tally));
     warnings.extend(ledger.leak(scenes[0]));
     let truncated: u64 = tally.replicas().map(|replica| replica.truncated).sum();
     if truncated > 0 {

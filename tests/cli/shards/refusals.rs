@@ -136,7 +136,7 @@ fn a_damaged_shard_is_told_by_its_name() {
     std::fs::write(&path, b"malus state 2\n...").unwrap();
     assert_told(
         &unmerged(&folder, &["out"]),
-        &["form \"2\", which this version"],
+        &["is of form 2, this version of malus reads form 1"],
     );
 }
 
