@@ -4,7 +4,11 @@ mod analyse;
 mod bad_input;
 mod printed;
 mod results;
+mod shards;
 mod stopping;
+#[cfg(unix)]
+mod submitting;
+mod tradeoff;
 
 pub use bad_input::{assert_told, refusal};
 use std::path::{Path, PathBuf};

@@ -164,7 +164,7 @@ fn a_curved_mirror_is_the_same_by_both_estimators() {
         a = 0.9
         n = 0.183
         k = 3.43";
-    agree("ball", &(room(GLOSSY) + ball), [65_536, 262_144], 2e-2);
+    agree("ball", &(room(GLOSSY) + ball), [131_072, 262_144], 2e-2);
 }
 
 #[test]
@@ -497,7 +497,7 @@ fn light_in_equilibrium_is_the_same_everywhere() {
         quantity = 'radiance'
         points = [[0.2, 0.5, 0.5], [0.9, 0.1, 0.1]]
         direction = [0.5, -0.3, 0.2]";
-    for (estimator, samples) in [("auto", 32_768), ("gather", 65_536)] {
+    for (estimator, samples) in [("auto", 65_536), ("gather", 65_536)] {
         let run = format!(
             "[run]\nestimator = '{estimator}'\nrepresentation = 'full'\nsamples = {samples}"
         );

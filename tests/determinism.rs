@@ -1,7 +1,7 @@
 //! The same bytes whatever the threads, the steps and the interruptions.
 
 use crate::experiment::{evaluate, readings, scene};
-use malus_estimator::{Answer, Reading, Stop, run};
+use malus_estimator::{Answer, Reading, Shard, State, Stop, resume, run};
 use malus_scene::Scene;
 
 fn room(estimator: &str, run: &str) -> Scene {
@@ -105,6 +105,63 @@ fn an_interrupted_run_has_the_bits_of_one_asked_for_so_many_samples() {
         assert!(whole.complete);
         assert_eq!(whole.samples, results.samples);
         assert_eq!(bits(&readings(&whole)), bits(&readings(&results)));
+    }
+}
+
+/// A shard, set aside after every second step.
+fn in_pieces(scene: &Scene, shard: Shard) -> State {
+    let mut state = State::new(shard);
+    let mut asked = 0;
+    loop {
+        let results = resume(scene, &scene.settings, &mut state, &mut |_, _| {
+            asked += 1;
+            if asked % 2 == 0 {
+                Answer::Interrupt
+            } else {
+                Answer::Continue
+            }
+        });
+        if results.unwrap().complete {
+            return state;
+        }
+    }
+}
+
+#[test]
+fn shards_that_are_set_aside_and_joined_have_the_bits_of_a_run_in_one_piece() {
+    for (estimator, cell) in [
+        ("auto", ""),
+        ("local", ""),
+        ("gather", ""),
+        ("direct", "cell = 0.1"),
+    ] {
+        let scene = room(estimator, &format!("samples = 1000\n{cell}"));
+        let whole = evaluate(&scene);
+        let shards = [2, 3, 1].map(|index| in_pieces(&scene, Shard::new(index, 3).unwrap()));
+        let joined = shards
+            .into_iter()
+            .reduce(|one, other| one.merge(other).unwrap());
+        let mut joined = joined.unwrap();
+        assert_eq!(joined.samples(), whole.samples);
+        let mut looks = 0;
+        let results = resume(&scene, &scene.settings, &mut joined, &mut |_, _| {
+            looks += 1;
+            Answer::Continue
+        });
+        let results = results.unwrap();
+        assert_eq!(
+            looks, 1,
+            "{estimator}: all samples are there, and some are taken again"
+        );
+        assert_eq!(
+            bits(&readings(&results)),
+            bits(&readings(&whole)),
+            "{estimator}"
+        );
+        assert_eq!(results.energy, whole.energy, "{estimator}");
+        assert_eq!(results.warnings, whole.warnings, "{estimator}");
+        let errors = [&results, &whole].map(|it| it.relative_error_max.to_bits());
+        assert_eq!(errors[0], errors[1], "{estimator}");
     }
 }
 

@@ -30,6 +30,8 @@ mod coats;
 mod representations;
 // The same bytes whatever the threads, the steps and the interruptions.
 mod determinism;
+// Studies of many variants.
+mod sweep;
 // Real rooms: the Blender office, and third-party rooms where they are at hand.
 mod rooms;
 // A furnished office against an independent program.

@@ -390,7 +390,7 @@ fn the_sun_shines_through_a_pane_in_a_window() {
         ))
     };
     let [auto, gather] =
-        [("auto", 65_536), ("gather", 131_072)].map(|(e, samples)| room(e, samples));
+        [("auto", 262_144), ("gather", 131_072)].map(|(e, samples)| room(e, samples));
     assert_same("gather", &auto, &gather, 2e-2);
     // Of walks from the sun alone, light that a pane mirrors last is missing: where the pane is far above grazing it is
     // little, so this bounds it from one side.

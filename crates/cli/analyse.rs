@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::number::{exact, significant};
 use crate::output::Directory;
 use crate::picture::{self, Exposure, Filter, Recording, Survey};
-use crate::run::{print, warn};
+use crate::report::{print, warn};
 use crate::table::{Edge, Table};
 use anyhow::{Result, anyhow};
 use std::path::Path;

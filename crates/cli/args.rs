@@ -1,8 +1,12 @@
 //! The command line as typed.
 
+use crate::computing::{Computing, assignment};
+use crate::portion::Portion;
+use crate::submit::Cluster;
 use clap::{Args, Parser, Subcommand};
 use malus_scene::Override;
-use std::path::PathBuf;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 
 /// Polarised light in rooms: illuminance or irradiance as a Stokes vector, with an error bar on every number.
 #[derive(Debug, Parser)]
@@ -18,6 +22,7 @@ Examples:
   malus check office.toml                         what is in it, and what is wrong
   malus run office.toml                           compute it; results go to results/office
   malus run office.toml --relative-error 0.005    the same, to 0.5 % everywhere
+  malus tradeoff office.toml                      how long which error takes
   malus analyse results/office/view.tiff          how a camera's picture is polarised
 
 Exit status: 0 done, 1 the run failed, 2 bad arguments or a bad scene, 130 interrupted.";
@@ -27,6 +32,9 @@ Examples:
   malus run office.toml -o results/glossy --set material.floor.a=0.6
   malus run office.toml --seconds 60 --threads 4
   malus run office.toml --samples 65536 --seed 7     repeats to the byte on any machine
+  malus run office.toml --relative-error 1e-4 --resume        goes on after a reboot
+  malus run office.toml --samples 1048576 --shard 3/8         one part of eight, for malus merge
+  malus run office.toml --samples 1048576 --submit slurm --shards 8 --sbatch=--cpus-per-task=16 --wait
 
 Results: sensors.csv (one row a sensor point), grids.csv (one row a sensor), a plan <sensor>.svg of each \
 grid, and summary.json. A stop by error or by time prints the --samples that repeats it.
@@ -34,12 +42,58 @@ grid, and summary.json. A stop by error or by time prints the --samples that rep
 Exit status: 0 done, 1 the run failed, 2 bad arguments or a bad scene, 130 interrupted (Ctrl-C \
 once: what is there is written and marked incomplete; twice: at once, without results).";
 
+const MERGE_EXAMPLES: &str = "\
+Examples:
+  malus merge results/office                       all shards lie in one directory
+  malus merge a/office b/office -o results/office  they were brought together from two machines
+
+The scene is read again, from where it was when the shards were computed or from --scene, and has to be the same: the \
+results have the bytes of a run in one piece. Shards stay where they are.
+
+Exit status: 0 done, 1 nothing can be written, 2 a shard is missing, there twice, unfinished, damaged or of another run.";
+
+const SWEEP_EXAMPLES: &str = "\
+Examples:
+  malus sweep study-floor.toml                    every variant of the study; results go to results/study-floor
+  malus sweep study.toml --samples 4096 --sensors
+
+A study file names a scene and what varies in it, by the keys that --set takes:
+  scene = \"office.toml\"
+  [grid]                                          every combination
+  \"material.Floor.a\" = [0, 0.2, 0.4]
+  [list]                                          rows of a table whose header holds keys
+  file = \"variants.csv\"
+  [sample]                                        a seeded Latin hypercube
+  count = 32
+  \"material.Floor.n\" = { from = 1.3, to = 2.0 }
+Several tables combine, each row of one with each of another. All variants take the walks that the stopping rule \
+gives the base, the scene as it stands.
+
+Results: variants.csv (a row a variant, written as it is finished), study.json (which variants differ, a ranking, \
+sensitivities), a picture <sensor>-trade.svg of each sensor.
+
+Exit status: 0 done, 1 a variant failed (the others are finished), 2 bad arguments, a bad scene or a bad study, 130 \
+interrupted.";
+
 const CHECK_EXAMPLES: &str = "\
 Examples:
   malus check office.toml
   malus check office.toml --set material.floor.rho=0.2 --json
 
 Exit status: 0 the scene can be run (there may be warnings), 2 bad arguments or a bad scene.";
+
+const TRADEOFF_EXAMPLES: &str = "\
+Examples:
+  malus tradeoff office.toml
+  malus tradeoff office.toml --budget 60 -o results/tradeoff
+  malus tradeoff office.toml --set run.compare=[]    without the models computed beside
+
+Results: tradeoff.csv (one row a setting and number of samples), tradeoff.svg (error against time), and the \
+cheapest setting for 3 %, 1 %, 0.3 % and 0.1 % on stdout. Errors are against a reference of this command's own; \
+the longer the budget, the smaller the errors that it can tell apart.
+
+Exit status: 0 done, 1 nothing could be measured, 2 bad arguments or a bad scene, 130 interrupted (Ctrl-C once: \
+what is measured is written; twice: at once, without results).";
 
 const ANALYSE_EXAMPLES: &str = "\
 Examples:
@@ -59,9 +113,18 @@ pub enum Command {
     /// Compute a scene: writes tables, plans and a summary, prints a short table
     #[command(after_help = RUN_EXAMPLES)]
     Run(Box<Run>),
+    /// Evaluate design variants of one scene, with the differences between them: which differ, and which key matters
+    #[command(after_help = SWEEP_EXAMPLES)]
+    Sweep(Box<Sweep>),
+    /// Join the shards of a run: writes the tables, plans, pictures and summary of the whole
+    #[command(after_help = MERGE_EXAMPLES)]
+    Merge(Merge),
     /// Read a scene and say what was understood and what is wrong with it; compute nothing
     #[command(after_help = CHECK_EXAMPLES)]
     Check(Check),
+    /// Measure error against time on a scene: which estimator, representation and number of samples to take
+    #[command(after_help = TRADEOFF_EXAMPLES)]
+    Tradeoff(Tradeoff),
     /// Look at a camera's picture through a linear polarising filter, and at how its light is polarised
     #[command(after_help = ANALYSE_EXAMPLES)]
     Analyse(Analyse),
@@ -78,50 +141,75 @@ pub struct Run {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Stop after so many walks of light, rounded up to whole rounds.
-    /// A stopping rule given here replaces all those of the scene file; of several, the first one reached stops the run
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub samples: Option<String>,
-
-    /// Stop when the standard error is at most this share at every sensor, e.g. 0.01 for 1 %
-    #[arg(long, value_name = "E", allow_hyphen_values = true)]
-    pub relative_error: Option<String>,
-
-    /// Stop before this time is over, at a checkpoint
-    #[arg(long, value_name = "T", allow_hyphen_values = true)]
-    pub seconds: Option<String>,
-
-    /// Seed of the random numbers: the same seed and samples give the same results
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub seed: Option<String>,
-
-    /// Threads to compute with; results do not depend on it [default: all cores]
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub threads: Option<String>,
-
-    /// What surfaces do: polarised, scalar (the same Fresnel reflectance without polarisation) or
-    /// diffuse (no mirror-like part)
-    #[arg(long, value_name = "MODEL")]
-    pub model: Option<String>,
-
-    /// How light is joined to the sensors: auto, local (walks from the lamps), gather (walks from the sensors) or
-    /// direct (hits of walks from the lamps, counted in cells of the size run.cell)
-    #[arg(long, value_name = "ESTIMATOR")]
-    pub estimator: Option<String>,
-
-    /// Stokes components carried: auto (what the scene needs), intensity (1), linear (3) or full (4)
-    #[arg(long, value_name = "COMPONENTS")]
-    pub representation: Option<String>,
-
-    /// Put a value in place of the scene file's, by its dotted path, e.g. material.floor.a=0.3 (may be repeated)
-    #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
-    pub set: Vec<Override>,
+    /// How to compute it.
+    #[command(flatten)]
+    pub computing: Computing,
 
     /// Draw no plans
     #[arg(long)]
     pub no_pictures: bool,
 
     /// Show no progress and no table; warnings and errors stay
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// What of the run is computed, and how it survives.
+    #[command(flatten)]
+    pub portion: Portion,
+
+    /// Where it is computed.
+    #[command(flatten)]
+    pub cluster: Cluster,
+}
+
+/// `malus sweep`.
+#[derive(Args, Debug)]
+pub struct Sweep {
+    /// Study file
+    #[arg(value_name = "STUDY.toml")]
+    pub study: PathBuf,
+
+    /// Directory of the results [default: results/<study file's name without .toml>]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// How to compute it.
+    #[command(flatten)]
+    pub computing: Computing,
+
+    /// Write each variant's sensor points to variants/NNN/sensors.csv
+    #[arg(long)]
+    pub sensors: bool,
+
+    /// Draw nothing
+    #[arg(long)]
+    pub no_pictures: bool,
+
+    /// Show no progress and no tables; warnings and errors stay
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// `malus merge`.
+#[derive(Args, Debug)]
+pub struct Merge {
+    /// Directories with shards, as `malus run --shard` writes them
+    #[arg(value_name = "DIR", required = true)]
+    pub shards: Vec<PathBuf>,
+
+    /// Directory of the results [default: the first of the directories]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// The scene file, where it is no longer where the shards were computed
+    #[arg(long, value_name = "SCENE.toml")]
+    pub scene: Option<PathBuf>,
+
+    /// Draw no plans and write no pictures
+    #[arg(long)]
+    pub no_pictures: bool,
+
+    /// Show no table; warnings and errors stay
     #[arg(short, long)]
     pub quiet: bool,
 }
@@ -140,6 +228,38 @@ pub struct Check {
     /// Put a value in place of the scene file's, by its dotted path, e.g. material.floor.a=0.3 (may be repeated)
     #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
     pub set: Vec<Override>,
+}
+
+/// `malus tradeoff`.
+#[derive(Args, Debug)]
+pub struct Tradeoff {
+    /// Scene file; its stopping rules are not used
+    #[arg(value_name = "SCENE.toml")]
+    pub scene: PathBuf,
+
+    /// Directory of the results [default: results/<scene file's name without .toml>]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// Time that the whole command may take [default: 300]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub budget: Option<String>,
+
+    /// Most threads to compute with [default: all cores]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub threads: Option<String>,
+
+    /// Put a value in place of the scene file's, by its dotted path, e.g. material.floor.a=0.3 (may be repeated)
+    #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
+    pub set: Vec<Override>,
+
+    /// Draw no diagram
+    #[arg(long)]
+    pub no_pictures: bool,
+
+    /// Show no progress and no table; warnings and errors stay
+    #[arg(short, long)]
+    pub quiet: bool,
 }
 
 /// `malus analyse`.
@@ -164,92 +284,19 @@ pub struct Analyse {
     pub output: Option<PathBuf>,
 }
 
-/// `KEY=VALUE` as an override; the value may hold further equals signs.
-fn assignment(text: &str) -> Result<Override, String> {
-    match text.split_once('=') {
-        Some((key, value)) if !key.trim().is_empty() => Ok(Override {
-            key: key.trim().to_owned(),
-            value: value.to_owned(),
-        }),
-        _ => Err("expected KEY=VALUE, such as material.floor.a=0.3".to_owned()),
-    }
-}
-
-/// An option of `run` that stands for a key of the table `[run]`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RunKey<'a> {
-    /// The option, without its dashes.
-    pub option: &'static str,
-    /// The key of the scene file.
-    pub key: &'static str,
-    /// The value as typed.
-    pub value: &'a str,
-}
-
-impl RunKey<'_> {
-    /// The same as an override: one set of rules checks what is typed and what is in the file.
-    pub fn as_override(&self) -> Override {
-        Override {
-            key: self.key.to_owned(),
-            value: self.value.to_owned(),
-        }
-    }
-}
-
 impl Run {
-    /// The options given that stand for keys of the scene file.
-    pub fn keys(&self) -> Vec<RunKey<'_>> {
-        [
-            ("samples", "run.samples", &self.samples),
-            ("relative-error", "run.relative_error", &self.relative_error),
-            ("seconds", "run.seconds", &self.seconds),
-            ("seed", "run.seed", &self.seed),
-            ("model", "run.model", &self.model),
-            ("estimator", "run.estimator", &self.estimator),
-            ("representation", "run.representation", &self.representation),
-        ]
-        .into_iter()
-        .filter_map(|(option, key, value)| {
-            let value = value.as_deref()?;
-            Some(RunKey { option, key, value })
-        })
-        .collect()
-    }
-
-    /// All overrides: those of `--set`, then the options, which win.
-    pub fn overrides(&self) -> Vec<Override> {
-        let options = self.keys();
-        let options = options.iter().map(RunKey::as_override);
-        self.set.iter().cloned().chain(options).collect()
-    }
-
-    /// Options that repeat this run to the byte, as a shell takes them.
-    pub fn repeating(&self, samples: u64) -> String {
-        const STOPS: [&str; 3] = ["run.samples", "run.relative_error", "run.seconds"];
-        let mut words = vec!["--samples".to_owned(), samples.to_string()];
-        for entry in &self.set {
-            if !STOPS.contains(&entry.key.as_str()) {
-                words.push("--set".to_owned());
-                words.push(quoted(&format!("{}={}", entry.key, entry.value)));
-            }
+    /// The run that [`Computing::words`] tells of, with a number of samples.
+    ///
+    /// # Errors
+    /// The words are none that it gives.
+    pub fn told(scene: &Path, words: &[String], samples: u64) -> Result<Self, clap::Error> {
+        let before = ["malus".into(), "run".into(), scene.as_os_str().to_owned()];
+        let samples = ["--samples".to_owned(), samples.to_string()];
+        let words = words.iter().chain(&samples).map(OsString::from);
+        match Arguments::try_parse_from(before.into_iter().chain(words))?.command {
+            Command::Run(run) => Ok(*run),
+            _ => unreachable!("run was asked for"),
         }
-        for entry in self.keys() {
-            if !STOPS.contains(&entry.key) {
-                words.push(format!("--{}", entry.option));
-                words.push(quoted(entry.value));
-            }
-        }
-        words.join(" ")
-    }
-}
-
-/// A word as a POSIX shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_.,=/:+".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }
 
@@ -277,22 +324,49 @@ mod tests {
     #[test]
     fn options_follow_sets_so_that_they_win() {
         let run = run(&["--samples", "64", "--set", "run.samples=32"]);
-        let values: Vec<String> = run.overrides().into_iter().map(|o| o.value).collect();
+        let values: Vec<String> = run
+            .computing
+            .overrides()
+            .into_iter()
+            .map(|o| o.value)
+            .collect();
         assert_eq!(values, ["32", "64"]);
     }
 
     #[test]
     fn a_set_value_may_hold_an_equals_sign() {
         let run = run(&["--set", "sensor.desk.grid={ counts = [2, 2] }"]);
-        assert_eq!(run.set[0].key, "sensor.desk.grid");
-        assert_eq!(run.set[0].value, "{ counts = [2, 2] }");
+        assert_eq!(run.computing.set[0].key, "sensor.desk.grid");
+        assert_eq!(run.computing.set[0].value, "{ counts = [2, 2] }");
         let words = ["malus", "run", "room.toml", "--set", "material.a"];
         assert!(Arguments::try_parse_from(words).is_err());
     }
 
     #[test]
     fn a_negative_number_is_a_value_to_be_judged_and_no_option() {
-        assert_eq!(run(&["--samples", "-5"]).samples.as_deref(), Some("-5"));
+        assert_eq!(
+            run(&["--samples", "-5"]).computing.samples.as_deref(),
+            Some("-5")
+        );
+    }
+
+    #[test]
+    fn a_run_is_told_again_by_its_words() {
+        let run = run(&[
+            "--seconds",
+            "60",
+            "--seed",
+            "7",
+            "--set",
+            "material.\"Wall 1\".a=0",
+        ]);
+        let again = Run::told(&run.scene, &run.computing.words(), 128).expect("the same");
+        assert_eq!(again.scene, run.scene);
+        let (again, run) = (again.computing, run.computing);
+        assert_eq!(again.words(), run.words());
+        assert_eq!(again.repeating(128), run.repeating(128));
+        let stops = [&again.samples, &again.seconds, &again.relative_error];
+        assert_eq!(stops, [&Some("128".to_owned()), &None, &None]);
     }
 
     #[test]
@@ -309,7 +383,7 @@ mod tests {
             "--quiet",
         ]);
         assert_eq!(
-            run.repeating(4096),
+            run.computing.repeating(4096),
             "--samples 4096 --set 'material.\"Wall 1\".a=0' --model scalar"
         );
     }

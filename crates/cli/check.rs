@@ -3,7 +3,7 @@
 use crate::args;
 use crate::failure::Failure;
 use crate::number::{significant, triple};
-use crate::run::print;
+use crate::report::print;
 use crate::table::{Edge, Table};
 use anyhow::Context;
 use malus_scene::{CameraReport, EmitterReport, MaterialReport, Report, Scene, SensorReport};

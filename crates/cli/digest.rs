@@ -104,6 +104,7 @@ fn ratio(a: f64, b: f64) -> f64 {
 #[cfg(test)]
 pub mod tests {
     use super::*;
+    use malus_estimator::Replicates;
 
     /// A reading of S0 = `s0` with an error of a hundredth and a degree of linear polarisation of a tenth.
     pub fn reading(s0: f64) -> Reading {
@@ -139,6 +140,7 @@ pub mod tests {
             mean_standard_error: 0.02,
             scalar: None,
             diffuse: None,
+            replicates: Replicates::default(),
         };
         let digest = Digest::of(&group);
         assert_eq!((digest.count, digest.enclosed), (3, 1));
@@ -157,6 +159,7 @@ pub mod tests {
             mean_standard_error: 0.0,
             scalar: None,
             diffuse: None,
+            replicates: Replicates::default(),
         };
         let free = Digest::of(&group).free.expect("one free point");
         assert_eq!(
@@ -179,6 +182,7 @@ pub mod tests {
             mean_standard_error: 0.0,
             scalar: Some(scalar),
             diffuse: None,
+            replicates: Replicates::default(),
         };
         let scalar = Digest::of(&group).free.and_then(|free| free.scalar);
         let scalar = scalar.expect("compared");
@@ -194,6 +198,7 @@ pub mod tests {
             mean_standard_error: 0.0,
             scalar: None,
             diffuse: None,
+            replicates: Replicates::default(),
         };
         assert_eq!(Digest::of(&group).free, None);
     }

@@ -20,7 +20,7 @@ impl Directory {
         let directory = Self(path.to_owned());
         let probe = directory.temporary("probe");
         File::create(&probe)
-            .and_then(|_| fs::remove_file(&probe))
+            .and_then(|_| removed(&probe))
             .with_context(|| format!("{}: cannot write results there", path.display()))?;
         Ok(directory)
     }
@@ -65,9 +65,49 @@ impl Directory {
         written.with_context(|| format!("{}: cannot be written", path.display()))
     }
 
+    /// A file that grows piece by piece in its place, and holds what there is at any moment.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn growing(&self, name: &str) -> Result<File> {
+        let path = self.0.join(name);
+        File::create(&path).with_context(|| format!("{}: cannot be written", path.display()))
+    }
+
+    /// Removes a file, if it is there, and what a program left of it that was ended while it wrote.
+    ///
+    /// # Errors
+    /// It is there to stay.
+    pub fn remove(&self, name: &str) -> Result<()> {
+        self.tidy(name);
+        let path = self.0.join(name);
+        removed(&path).with_context(|| format!("{}: cannot be removed", path.display()))
+    }
+
+    /// Removes what a program left of files that was ended while it wrote them, where their names begin with `name`.
+    pub fn tidy(&self, name: &str) {
+        let begun = format!(".{name}");
+        for entry in fs::read_dir(&self.0).into_iter().flatten().flatten() {
+            let found = entry.file_name();
+            let found = found.to_string_lossy();
+            if found.starts_with(&begun) && found.ends_with(".part") {
+                // It is in nobody's way.
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+    }
+
     /// A name of our own, so that two runs into one directory do not mix their bytes.
     fn temporary(&self, name: &str) -> PathBuf {
         self.0.join(format!(".{name}.{}.part", std::process::id()))
+    }
+}
+
+/// Removes a file; that it is not there is no error: another machine may have had the same name for its own.
+fn removed(path: &Path) -> std::io::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
+        result => result,
     }
 }
 

@@ -5,7 +5,7 @@ use crate::label;
 use crate::number::{measured, metres, significant, with_error};
 use crate::student::half_width_95;
 use crate::summary::Circumstances;
-use crate::table::{Edge, Table};
+use crate::table::{Table, left, right};
 use malus_estimator::{Group, Reading, Results, Stop};
 use malus_optics::Representation;
 use malus_scene::{Scene, Sensor};
@@ -175,14 +175,6 @@ fn provenance(results: &Results, circumstances: &Circumstances, directory: &Path
         circumstances.repeat,
         directory.display(),
     )
-}
-
-fn left(title: &str) -> (String, Edge) {
-    (title.to_owned(), Edge::Left)
-}
-
-fn right(title: &str) -> (String, Edge) {
-    (title.to_owned(), Edge::Right)
 }
 
 #[cfg(test)]

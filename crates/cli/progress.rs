@@ -46,36 +46,38 @@ impl Reporter {
 
     /// Shows which share of a picture is done after `elapsed` seconds.
     pub fn show_share(&mut self, name: &str, share: f64, elapsed: f64) {
-        let message = format!("{name}: {:.0} %", 100.0 * share);
-        match &mut self.form {
-            Form::Silent => {}
-            Form::Bar(bar) => {
-                bar.set_position((share * STEPS as f64) as u64);
-                bar.set_message(message);
-            }
-            Form::Lines { last } => {
-                if elapsed >= *last + PLAIN_LINES_S {
-                    *last = elapsed;
-                    eprintln!("{} so far: {message}", duration(elapsed));
-                }
-            }
-        }
+        self.tell(share, elapsed, || format!("{name}: {:.0} %", 100.0 * share));
+    }
+
+    /// Shows what is going on within a job that takes `limit` seconds in all, after `elapsed` of them; the time first, as a
+    /// narrow terminal cuts off the end.
+    pub fn show_stage(&mut self, stage: &str, elapsed: f64) {
+        let left = self.limit.map_or(0.0, |limit| (limit - elapsed).max(0.0));
+        let share = elapsed / (elapsed + left).max(1e-9);
+        self.tell(share, elapsed, || {
+            format!("at most {} left, {stage}", duration(left))
+        });
     }
 
     /// Shows where the run stands after `elapsed` seconds.
     pub fn show(&mut self, progress: &Progress, elapsed: f64) {
         let left = self.forecast.seconds_left(progress, elapsed, self.limit);
+        let share = left.map_or(0.0, |left| elapsed / (elapsed + left).max(1e-9));
+        self.tell(share, elapsed, || state(progress, left));
+    }
+
+    /// Moves the bar to a share of the job, or prints a line where it is time for one.
+    fn tell(&mut self, share: f64, elapsed: f64, message: impl FnOnce() -> String) {
         match &mut self.form {
             Form::Silent => {}
             Form::Bar(bar) => {
-                let share = left.map_or(0.0, |left| elapsed / (elapsed + left).max(1e-9));
                 bar.set_position((share * STEPS as f64) as u64);
-                bar.set_message(state(progress, left));
+                bar.set_message(message());
             }
             Form::Lines { last } => {
                 if elapsed >= *last + PLAIN_LINES_S {
                     *last = elapsed;
-                    eprintln!("{} so far: {}", duration(elapsed), state(progress, left));
+                    eprintln!("{} so far: {}", duration(elapsed), message());
                 }
             }
         }

@@ -3,7 +3,7 @@
 use crate::digest::Digest;
 use crate::number::exact;
 use anyhow::{Context, Result};
-use malus_estimator::{Paired, Reading, Results};
+use malus_estimator::{Group, Paired, Reading};
 use malus_scene::{Scene, Sensor};
 
 /// Columns of `sensors.csv`.
@@ -17,9 +17,9 @@ const GRIDS: &str = "sensor,count,enclosed,mean,se_mean,min,max,u0,dolp_mean";
 ///
 /// # Errors
 /// A result that is no finite number.
-pub fn sensors(scene: &Scene, results: &Results) -> Result<Vec<u8>> {
+pub fn sensors(scene: &Scene, groups: &[Group]) -> Result<Vec<u8>> {
     let mut table = table(SENSORS)?;
-    for (sensor, group) in scene.sensors.iter().zip(&results.groups) {
+    for (sensor, group) in scene.sensors.iter().zip(groups) {
         for (index, reading) in group.readings.iter().enumerate() {
             let row = sensor_row(sensor, index, reading)
                 .with_context(|| format!("sensor {:?}, point {index}", sensor.name))?;

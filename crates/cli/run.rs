@@ -1,19 +1,23 @@
-//! `malus run`: compute a scene and write what comes out.
+//! `malus run`: compute a scene, or a shard of it, and write what comes out.
 
 use crate::args;
-use crate::digest::Digest;
+use crate::computing::quoted;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
+use crate::job::Job;
 use crate::output::Directory;
-use crate::progress::Reporter;
+use crate::part::{CHECKPOINT, Head, Part};
+use crate::portion::{rounded_up, samples_alone};
+use crate::report::{Report, print, warn};
+use crate::slurm::Array;
+use crate::submit::Reach;
 use crate::summary::Circumstances;
-use crate::{overview, picture, plan, rows, stop, summary};
-use anyhow::{Context, anyhow};
-use malus_estimator::{Answer, Picture, Results};
-use malus_scene::{Camera, Scene, Settings};
-use std::io::Write;
+use crate::{merge, picture, shards, stop, submit};
+use anyhow::Context;
+use malus_estimator::Shard;
+use malus_scene::{Scene, Settings};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// How a run ended without an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,181 +28,249 @@ pub enum End {
     Interrupted,
 }
 
-/// Computes the scene, writes the results, prints the overview.
+/// Computes the scene, writes the results, prints the overview; of a shard, writes what `malus merge` joins.
 ///
 /// # Errors
 /// Bad arguments, a bad scene, or a run that failed.
 pub fn run(command: &args::Run) -> Result<End, Failure> {
-    let threads = threads(command)?;
+    let threads = command.computing.threads()?;
+    let interval = command.portion.interval().map_err(Failure::input)?;
     let scene = load(command)?;
-    let mut settings = scene.settings.clone();
-    stop::narrow(&mut settings, &command.overrides());
-    let directory = Directory::prepare(&directory(command)).map_err(Failure::run)?;
-    warn(&scene.warnings);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .with_context(|| format!("cannot start {threads} threads"))
+    let settings = settings(command, &scene);
+    if command.cluster.submit.is_some() {
+        return hand_in(command, &scene, &settings);
+    }
+    let shard = command.portion.shard(&settings).map_err(Failure::input)?;
+    let directory = Directory::prepare(&directory(command.output.as_deref(), &command.scene))
         .map_err(Failure::run)?;
-    let interrupt = Interrupt::listen().map_err(Failure::run)?;
-    let (results, seconds) = pool.install(|| compute(command, &scene, &settings, &interrupt));
-    warn(&results.warnings);
-    let pictured = if command.no_pictures {
-        &[][..]
-    } else {
-        &scene.cameras
+    let name = shard.map_or(CHECKPOINT.to_owned(), Part::name_of);
+    let head = Head {
+        threads,
+        ..head(command, &scene, &settings, shard)
     };
+    let mut part = command
+        .portion
+        .begin(head, &name, &directory)
+        .map_err(Failure::input)?;
+    warn(&scene.warnings);
+    let pool = pool(threads)?;
+    let job = Job {
+        scene: &scene,
+        settings: &settings,
+        interrupt: &Interrupt::listen().map_err(Failure::run)?,
+        directory: &directory,
+        interval,
+        name: &name,
+        quiet: command.quiet,
+    };
+    let end = pool.install(|| match shard {
+        Some(shard) => compute_shard(&job, &mut part, shard),
+        None => compute_whole(command, &job, &mut part),
+    });
+    end.map_err(Failure::run)
+}
+
+/// Computes a whole run and reports it.
+fn compute_whole(command: &args::Run, job: &Job, part: &mut Part) -> anyhow::Result<End> {
+    let results = job.compute(part)?;
+    warn(&results.warnings);
     let mut complete = results.complete;
-    for camera in pictured {
-        if interrupt.asked() {
+    for index in pictured(part, job.scene) {
+        if job.interrupt.asked() {
+            complete = false;
             break;
         }
-        let taken = pool.install(|| shoot(command, &scene, &settings, camera, &interrupt));
+        job.shoot(part, index)?;
+        let camera = &job.scene.cameras[index];
+        let taken = part.films[index].developed(camera);
         complete &= taken.complete;
-        picture::write(&taken, &scene, &directory, &camera.name).map_err(Failure::run)?;
+        picture::write(&taken, job.scene, job.directory, &camera.name)?;
     }
     let circumstances = Circumstances {
-        seconds,
-        threads,
-        repeat: command.repeating(results.samples),
-        warnings: [scene.warnings.as_slice(), &results.warnings].concat(),
+        seconds: part.head.seconds,
+        threads: part.head.threads,
+        complete,
+        repeat: command.computing.repeating(results.samples),
+        warnings: [job.scene.warnings.as_slice(), &results.warnings].concat(),
     };
-    let digests: Vec<Digest> = results.groups.iter().map(Digest::of).collect();
-    let summary = summary::json(&scene, &settings, &results, &circumstances);
-    let summary = summary.map_err(Failure::run)?;
-    write(command, &scene, &results, &digests, &summary, &directory).map_err(Failure::run)?;
-    if !command.quiet {
-        let text = overview::text(&scene, &results, &digests, &circumstances, directory.path());
-        print(&text).map_err(Failure::run)?;
-    }
+    let report = Report {
+        directory: job.directory,
+        pictures: part.head.pictures,
+        quiet: command.quiet,
+    };
+    report.write(job.scene, job.settings, &results, &circumstances)?;
     if complete {
-        Ok(End::Complete)
+        job.directory.remove(job.name)?;
+        return Ok(End::Complete);
+    }
+    let mut told = format!(
+        "interrupted: the results in {} are incomplete",
+        job.directory.path().display()
+    );
+    if job.interval.is_some() {
+        job.set_aside(part)?;
+        told += "; --resume goes on with them";
+    }
+    warn(&[told]);
+    Ok(End::Interrupted)
+}
+
+/// Computes a shard and leaves it to be merged.
+fn compute_shard(job: &Job, part: &mut Part, shard: Shard) -> anyhow::Result<End> {
+    let path = job.directory.path().join(job.name);
+    let tell = |what: &str| {
+        let text = format!("shard {shard} {what}: {}\n", path.display());
+        if job.quiet { Ok(()) } else { print(&text) }
+    };
+    if part.head.complete {
+        tell("is there already")?;
+        return Ok(End::Complete);
+    }
+    job.compute(part)?;
+    for index in pictured(part, job.scene) {
+        if !job.interrupt.asked() {
+            job.shoot(part, index)?;
+        }
+    }
+    part.head.complete = !job.interrupt.asked();
+    job.set_aside(part)?;
+    if part.head.complete {
+        tell("is finished")?;
+        return Ok(End::Complete);
+    }
+    warn(&[format!(
+        "interrupted: {} is not finished; --resume goes on with it",
+        path.display()
+    )]);
+    Ok(End::Interrupted)
+}
+
+/// Hands the scene to a cluster, as shards.
+fn hand_in(command: &args::Run, scene: &Scene, settings: &Settings) -> Result<End, Failure> {
+    let goal = samples_alone(settings, "--submit").map_err(Failure::input)?;
+    let goal = rounded_up(goal);
+    let count = command.cluster.count().map_err(Failure::input)?;
+    let head = head(command, scene, settings, None);
+    let output = std::path::absolute(directory(command.output.as_deref(), &command.scene))
+        .map_err(|e| Failure::run(e.into()))?;
+    let directory = Directory::prepare(&output).map_err(Failure::run)?;
+    shards::belong(&output, &head, count).map_err(Failure::input)?;
+    warn(&scene.warnings);
+    let reach = |index| {
+        let shard = Shard::new(index, count).expect("the number of shards is checked");
+        let found = Part::peek(&output.join(Part::name_of(shard)));
+        found.map_or(Reach::default(), |found| Reach {
+            share: (found.samples as f64 / goal as f64 + found.shot)
+                / (1 + scene.cameras.len()) as f64,
+            finished: found.finishes(&head),
+        })
+    };
+    let program = std::env::current_exe().context("cannot tell where this program is");
+    let title = format!("malus {}", scene.name);
+    let array = Array {
+        directory: &directory,
+        title: &title,
+        words: &words(
+            command,
+            &program.map_err(Failure::run)?,
+            &head,
+            goal,
+            &output,
+        ),
+        count,
+        options: command.cluster.sbatch.as_deref().unwrap_or_default(),
+    };
+    let merge = format!("malus merge {}", quoted(&output.to_string_lossy()));
+    let end = submit::submit(&command.cluster, &array, &reach, &merge, command.quiet)?;
+    if end == End::Complete && command.cluster.wait {
+        merge::merge(&args::Merge {
+            shards: vec![output],
+            output: None,
+            scene: Some(command.scene.clone()),
+            no_pictures: command.no_pictures,
+            quiet: command.quiet,
+        })?;
+    }
+    Ok(end)
+}
+
+/// The program and its arguments that compute a shard, but for which.
+fn words(
+    command: &args::Run,
+    program: &Path,
+    head: &Head,
+    goal: u64,
+    output: &Path,
+) -> Vec<String> {
+    let text = |path: &Path| path.to_string_lossy().into_owned();
+    let mut words = vec![text(program), "run".to_owned(), head.scene.clone()];
+    words.extend(head.words.iter().cloned());
+    words.extend(["--samples".to_owned(), goal.to_string()]);
+    if let Some(seconds) = &command.portion.checkpoint {
+        words.extend(["--checkpoint".to_owned(), seconds.clone()]);
+    }
+    words.extend(command.no_pictures.then(|| "--no-pictures".to_owned()));
+    words.extend(["--quiet".to_owned(), "-o".to_owned(), text(output)]);
+    words
+}
+
+/// Indices of the cameras that take pictures.
+fn pictured(part: &Part, scene: &Scene) -> std::ops::Range<usize> {
+    0..if part.head.pictures {
+        scene.cameras.len()
     } else {
-        warn(&[format!(
-            "interrupted: the results in {} are incomplete",
-            directory.path().display()
-        )]);
-        Ok(End::Interrupted)
+        0
+    }
+}
+
+/// What a file of this run says of itself at its beginning.
+fn head(command: &args::Run, scene: &Scene, settings: &Settings, shard: Option<Shard>) -> Head {
+    let path = std::path::absolute(&command.scene).unwrap_or_else(|_| command.scene.clone());
+    Head {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        fingerprint: scene.fingerprint(settings),
+        shard: shard.unwrap_or(Shard::WHOLE),
+        goal: settings.samples.map(rounded_up),
+        samples: 0,
+        shot: 0.0,
+        complete: false,
+        seconds: 0.0,
+        threads: 1,
+        scene: path.to_string_lossy().into_owned(),
+        words: command.computing.words(),
+        pictures: !command.no_pictures,
     }
 }
 
 /// Loads the scene; errors name an option the way it was typed.
-fn load(command: &args::Run) -> Result<Scene, Failure> {
-    Scene::load(&command.scene, &command.overrides()).map_err(|error| {
-        let mut text = error.to_string();
-        for entry in command.keys() {
-            let as_set = format!("--set {}={}", entry.key, entry.value);
-            text = text.replace(&as_set, &format!("--{} {}", entry.option, entry.value));
-        }
-        Failure::input(anyhow!(text))
-    })
+pub fn load(command: &args::Run) -> Result<Scene, Failure> {
+    Scene::load(&command.scene, &command.computing.overrides())
+        .map_err(|error| command.computing.refused(&error))
 }
 
-/// More threads than any machine has cores: beyond, starting them is all that a run would do.
-const MOST_THREADS: usize = 1024;
-
-/// Number of threads asked for, or as many as there are cores.
-fn threads(command: &args::Run) -> Result<usize, Failure> {
-    let Some(text) = &command.threads else {
-        return Ok(std::thread::available_parallelism().map_or(1, usize::from));
-    };
-    text.parse()
-        .ok()
-        .filter(|count| (1..=MOST_THREADS).contains(count))
-        .ok_or_else(|| {
-            Failure::input(anyhow!(
-                "--threads {text}: must be a whole number from 1 to {MOST_THREADS}, found {text:?}"
-            ))
-        })
+/// How the scene is to be computed: its own settings with the stopping rules of the command line.
+pub fn settings(command: &args::Run, scene: &Scene) -> Settings {
+    let mut settings = scene.settings.clone();
+    stop::narrow(&mut settings, &command.computing.overrides());
+    settings
 }
 
-/// Where the results go.
-fn directory(command: &args::Run) -> PathBuf {
-    command.output.clone().unwrap_or_else(|| {
-        let stem = command.scene.file_stem().unwrap_or("scene".as_ref());
-        Path::new("results").join(stem)
-    })
+/// So many threads, ready to compute.
+///
+/// # Errors
+/// The system gives no threads.
+pub fn pool(threads: usize) -> Result<ThreadPool, Failure> {
+    ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .with_context(|| format!("cannot start {threads} threads"))
+        .map_err(Failure::run)
 }
 
-/// The results, and the seconds they took.
-fn compute(
-    command: &args::Run,
-    scene: &Scene,
-    settings: &Settings,
-    interrupt: &Interrupt,
-) -> (Results, f64) {
-    let started = Instant::now();
-    let mut reporter = Reporter::new(command.quiet, settings.seconds);
-    let results = malus_estimator::run(scene, settings, &mut |progress| {
-        let elapsed = started.elapsed().as_secs_f64();
-        reporter.show(progress, elapsed);
-        if interrupt.asked() {
-            Answer::Interrupt
-        } else {
-            stop::answer(progress, elapsed, settings.seconds)
-        }
-    });
-    reporter.finish();
-    (results, started.elapsed().as_secs_f64())
-}
-
-/// The picture that a camera takes.
-fn shoot(
-    command: &args::Run,
-    scene: &Scene,
-    settings: &Settings,
-    camera: &Camera,
-    interrupt: &Interrupt,
-) -> Picture {
-    let started = Instant::now();
-    let mut reporter = Reporter::new(command.quiet, None);
-    let picture = malus_estimator::picture(scene, camera, settings, &mut |share| {
-        reporter.show_share(&camera.name, share, started.elapsed().as_secs_f64());
-        if interrupt.asked() {
-            Answer::Interrupt
-        } else {
-            Answer::Continue
-        }
-    });
-    reporter.finish();
-    picture
-}
-
-/// Writes all files; the summary last, so that where it is, everything is.
-fn write(
-    command: &args::Run,
-    scene: &Scene,
-    results: &Results,
-    digests: &[Digest],
-    summary: &[u8],
-    directory: &Directory,
-) -> anyhow::Result<()> {
-    let sensors = rows::sensors(scene, results)?;
-    let grids = rows::grids(scene, digests)?;
-    directory.write("sensors.csv", &sensors)?;
-    directory.write("grids.csv", &grids)?;
-    let pictured = if command.no_pictures { &[] } else { digests };
-    for (index, (sensor, digest)) in scene.sensors.iter().zip(pictured).enumerate() {
-        if let Some(drawn) = plan::svg(scene, results, index, digest) {
-            directory.write(&format!("{}.svg", sensor.name), drawn.as_bytes())?;
-        }
-    }
-    directory.write("summary.json", summary)
-}
-
-/// Warnings, on stderr even where the run is quiet.
-pub fn warn(warnings: &[String]) {
-    for warning in warnings {
-        eprintln!("warning: {warning}");
-    }
-}
-
-/// Text on stdout; a reader that has gone away is no failure.
-pub fn print(text: &str) -> anyhow::Result<()> {
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(error).context("cannot write to stdout")
-        }
-        _ => Ok(()),
+/// Where the results go: what was asked for, or a directory of the scene file's name.
+pub fn directory(asked: Option<&Path>, scene: &Path) -> PathBuf {
+    match asked {
+        Some(path) => path.to_owned(),
+        None => Path::new("results").join(scene.file_stem().unwrap_or("scene".as_ref())),
     }
 }

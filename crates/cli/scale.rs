@@ -41,10 +41,15 @@ impl Scale {
         if low < 0.0 || high < STRONG_PEAK * field.mean() {
             return Some(Self::linear(low, high, false));
         }
-        Some(Self {
+        Some(Self::by_decades(low.max(high / LOGARITHMIC_RANGE), high))
+    }
+
+    /// A logarithmic scale between two values, 0 < low < high.
+    pub fn by_decades(low: f64, high: f64) -> Self {
+        Self {
             logarithmic: true,
-            ..Self::linear(low.max(high / LOGARITHMIC_RANGE), high, false)
-        })
+            ..Self::linear(low, high, false)
+        }
     }
 
     fn linear(low: f64, high: f64, even: bool) -> Self {
@@ -60,6 +65,11 @@ impl Scale {
             even,
             power,
         }
+    }
+
+    /// Powers of ten between the ends.
+    pub fn decades(&self) -> f64 {
+        (self.high / self.low).log10()
     }
 
     /// Place of a value between the ends, 0 … 1.

@@ -72,7 +72,7 @@ impl Forecast {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
     use malus_scene::{Estimator, Model};
 
@@ -87,7 +87,7 @@ mod tests {
         }
     }
 
-    fn settings() -> Settings {
+    pub fn settings() -> Settings {
         Settings {
             model: Model::Polarised,
             compare_scalar: true,

@@ -8,21 +8,31 @@ const MANY: u32 = 1000;
 ///
 /// For printing only: results do not depend on it.
 pub fn half_width_95(dof: u32) -> f64 {
-    const PROBABILITY: f64 = 0.975;
     if dof > MANY {
         return expanded(f64::from(dof));
     }
+    half_width(0.95, dof)
+}
+
+/// Half the width of a two-sided interval of that confidence, in standard errors.
+pub fn half_width(confidence: f64, dof: u32) -> f64 {
     // In the angle θ with t = √dof · tan θ the distribution is a finite sum, monotone on (0, π/2).
     let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if 0.5 + 0.5 * inside(middle, dof) < PROBABILITY {
+        if inside(middle, dof) < confidence {
             low = middle;
         } else {
             high = middle;
         }
     }
     f64::from(dof.max(1)).sqrt() * (0.5 * (low + high)).tan()
+}
+
+/// Probability with which chance alone makes |t| as large or larger; below 10⁻¹⁵ it is not told from 0.
+pub fn two_sided(t: f64, dof: u32) -> f64 {
+    let angle = (t.abs() / f64::from(dof.max(1)).sqrt()).atan();
+    (1.0 - inside(angle, dof)).max(0.0)
 }
 
 /// Probability of |t| < √dof · tan θ (Abramowitz & Stegun, 26.7.3 and 26.7.4).
@@ -71,6 +81,15 @@ mod tests {
             let got = half_width_95(dof);
             assert!((got - expected).abs() < 2e-8, "{dof}: {got}");
         }
+    }
+
+    #[test]
+    fn a_probability_is_that_of_its_quantile() {
+        for (confidence, dof) in [(0.95, 63), (0.999, 63), (0.99, 10)] {
+            let p = two_sided(half_width(confidence, dof), dof);
+            assert!((p - (1.0 - confidence)).abs() < 1e-9, "{p}");
+        }
+        assert!((two_sided(0.0, 63) - 1.0).abs() < 1e-15 && two_sided(1e9, 63) < 1e-15);
     }
 
     #[test]

@@ -13,6 +13,8 @@ pub struct Circumstances {
     pub seconds: f64,
     /// Threads it ran on.
     pub threads: usize,
+    /// False where the user ended the run, or a picture, before it was done.
+    pub complete: bool,
     /// Options of `malus run` that repeat it to the byte.
     pub repeat: String,
     /// Warnings of the scene and of the run.
@@ -122,7 +124,7 @@ pub fn json(
         seconds: circumstances.seconds,
         threads: circumstances.threads,
         triangles: scene.surfaces.len(),
-        complete: results.complete,
+        complete: circumstances.complete,
         stop: stop(results.stop),
         repeat: &circumstances.repeat,
         relative_error_max: results.relative_error_max,

@@ -9,6 +9,16 @@ pub enum Edge {
     Right,
 }
 
+/// A column of words.
+pub fn left(title: &str) -> (String, Edge) {
+    (title.to_owned(), Edge::Left)
+}
+
+/// A column of numbers.
+pub fn right(title: &str) -> (String, Edge) {
+    (title.to_owned(), Edge::Right)
+}
+
 /// A table of text.
 #[derive(Debug)]
 pub struct Table {

@@ -64,7 +64,7 @@ fn a_coat_over_white_loses_nothing() {
             exitance = 1
             {}
             [run]
-            samples = 2048",
+            samples = 8192",
             cube("wall", [0.0; 3], [1.0; 3]),
             sheet("patch", [0.1, 0.1, 0.0], [0.8, 0.0, 0.0], [0.0, 0.8, 0.0]),
             sensors(&[[0.5, 0.5, 0.5], [0.9, 0.2, 0.3]], [0.6, 0.0, 0.8])

@@ -29,7 +29,7 @@ fn variances(a: f64, estimator: &str, seeds: u32) -> [f64; 3] {
 #[test]
 fn values_beside_walls_are_those_of_long_runs_from_the_sensors_alone() {
     let long = room(0.0, "samples = 524288\nestimator = 'gather'\nseed = 100");
-    let short = room(0.0, "samples = 131072");
+    let short = room(0.0, "samples = 262144");
     for (point, ((value, error), (exact, uncertainty))) in
         POINTS.iter().zip(short.into_iter().zip(long))
     {

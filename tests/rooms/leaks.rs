@@ -94,7 +94,7 @@ fn lattice(surfaces: &Surfaces, min: DVec3, max: DVec3) -> Vec<DVec3> {
     points
 }
 
-fn office() -> Surfaces {
+fn office() -> std::sync::Arc<Surfaces> {
     let scene = super::office("office.glb");
     let folder = Folder::new(scene.as_bytes(), &[]);
     Scene::load(&folder.path("room.toml"), &[])

@@ -7,13 +7,13 @@ use malus_scene::Scene;
 const SEEDS: u64 = 4000;
 
 /// Student's t for 63 degrees of freedom at 97.5 %.
-const T: f64 = 1.998_340_5;
+pub const T: f64 = 1.998_340_5;
 
 /// Value and standard error of something that is read.
 type Quantity = fn(&Reading) -> (f64, f64);
 
-/// The paper's room with another material or another sensor.
-fn room(material: &str, sensor: &str) -> Scene {
+/// The paper's room with another material or other sensor points.
+pub fn room(material: &str, points: &str) -> Scene {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     let toml = format!(
@@ -36,7 +36,7 @@ fn room(material: &str, sensor: &str) -> Scene {
         exitance = 1
         [[sensor]]
         name = 'point'
-        points = [{sensor}]
+        points = [{points}]
         normal = [0, 0, 1]
         [run]
         samples = 1024"

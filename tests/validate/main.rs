@@ -1,6 +1,6 @@
 //! Writes `docs/validation.md`: every exact answer against what malus gets. Minutes of work, so it is run by hand:
 //!
-//! `cargo run --release --example validate > docs/validation.md`
+//! `cargo run --release --example validate > docs/validation.md`, or its part on stopping alone with `-- stopping`.
 #![expect(
     clippy::unwrap_used,
     reason = "a document that cannot be made is to panic"
@@ -12,6 +12,8 @@ mod coverage;
 mod figure;
 mod fresnel;
 mod rooms;
+mod stopping;
+mod studies;
 
 /// One line of a table: an exact answer and what came out.
 struct Row {
@@ -58,6 +60,10 @@ fn table(title: &str, text: &str, rows: &[Row]) {
 }
 
 fn main() {
+    // The part that takes longest can be had alone.
+    if std::env::args().nth(1).as_deref() == Some("stopping") {
+        return stopping::print();
+    }
     println!("# Validation\n");
     println!("Every exact answer that malus is held against, and what it gets.");
     println!(
@@ -84,5 +90,7 @@ fn main() {
     );
     figure::print();
     coverage::print();
+    stopping::print();
+    studies::print();
     baseline::print();
 }

@@ -5,8 +5,9 @@
 //! each of them errs at every sensor. The shares are then those that bring all sensors to one relative error at the least
 //! cost; as they depend on scene and seed alone, the sums of a run do not depend on when it stops.
 
-use crate::gather::gather;
+use crate::gather::{Aims, Observer, gather};
 use crate::local::local;
+use crate::medium::Medium;
 use crate::pass::{Channels, Effort, Passes};
 use crate::random::Stream;
 use crate::receiver::Receiver;
@@ -22,19 +23,27 @@ const MOST: u32 = 8 * PARTS;
 /// Share with which the pilot weighs the two kinds of walk against each other, in parts.
 const TRIED: u32 = PARTS / 8;
 
-/// Rounds of the pilot, and the walks from the emitters and from each sensor in one round.
+/// Rounds of the pilot, and in one round the walks from the emitters and those from all sensors, of which each has one at
+/// least.
 const ROUNDS: u32 = 16;
 const LAUNCHED: u64 = 8;
-const GATHERED: u64 = 2;
+const GATHERED: u64 = 16;
+
+/// By how much less walks from the emitters err in a run, whose points are many and spread evenly. Far from walls their
+/// light is smooth; it is not where walks from the sensors are needed.
+const EVEN: f64 = 3.0;
+
+/// Walks from one sensor that tell as much of its variance as the mean over all sensors does.
+const TELLING: f64 = 16.0;
 
 /// Cost of a ray, of joining a vertex to a sensor, and of looking into mirrors from a vertex, relative to each other.
 const RAY: f64 = 1.0;
 const JOIN: f64 = 0.2;
 const LOOK: f64 = 4.0;
 
-/// Walks from each sensor, relative to those from the emitters.
+/// Walks from each sensor, relative to those from the emitters, as the pilot of a run has found them.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Allocation {
+pub struct Allocation {
     parts: Vec<u32>,
 }
 
@@ -63,18 +72,29 @@ impl Allocation {
     pub(crate) fn piloted(
         passes: &Passes,
         receivers: &[Receiver],
+        aims: &[Aims],
         exact: impl Fn(usize) -> f64,
         seed: u64,
     ) -> Self {
         let sensors = receivers.len();
+        let free: Vec<usize> = (0..sensors)
+            .filter(|&s| !receivers[s].enclosed && receivers[s].is_irradiance())
+            .collect();
+        let walks = (GATHERED / free.len().max(1) as u64).max(1);
         let pilot = Pilot {
-            // The main model alone, and of that S0 alone: the walks are the same.
+            walks,
+            // The main model of the first variant alone, and of that S0 alone: the walks are the same.
             passes: Passes {
+                main: Medium {
+                    variations: &passes.main.variations[..1],
+                    ..passes.main
+                },
                 apart: None,
                 ..*passes
             },
             channels: Channels::of_intensity(),
             receivers,
+            aims,
             tried: Self {
                 parts: vec![TRIED; sensors],
             },
@@ -84,12 +104,9 @@ impl Allocation {
             // Beyond the streams of the run and of its pictures, so that no walk of the run is known beforehand.
             .map(|round| pilot.round(Stream::new(seed, 2 * REPLICAS + round)))
             .collect();
-        let free: Vec<usize> = (0..sensors)
-            .filter(|&s| !receivers[s].enclosed && receivers[s].is_irradiance())
-            .collect();
         let mut needs: Vec<Need> = free
             .iter()
-            .map(|&sensor| Need::of(&rounds, sensor, exact(sensor)))
+            .map(|&sensor| Need::of(&rounds, walks, sensor, exact(sensor)))
             .collect();
         let mean = needs.iter().map(|n| n.mean).sum::<f64>() / needs.len().max(1) as f64;
         for need in &mut needs {
@@ -97,10 +114,16 @@ impl Allocation {
             need.launched /= square;
             need.gathered /= square;
         }
-        let walks = f64::from(ROUNDS) * LAUNCHED as f64;
-        let cost_launched = rounds.iter().map(|r| r.cost_launched).sum::<f64>() / walks;
-        let walks = f64::from(ROUNDS) * GATHERED as f64 * free.len() as f64;
-        let cost_gathered = rounds.iter().map(|r| r.cost_gathered).sum::<f64>() / walks;
+        // So few walks seldom meet what is rare and bright, and then at few sensors: what one has met warns the others.
+        let gathered = needs.iter().map(|n| n.gathered).sum::<f64>() / needs.len().max(1) as f64;
+        let own = f64::from(ROUNDS) * walks as f64;
+        for need in &mut needs {
+            need.gathered = (own * need.gathered + TELLING * gathered) / (own + TELLING);
+        }
+        let launched = f64::from(ROUNDS) * LAUNCHED as f64;
+        let cost_launched = rounds.iter().map(|r| r.cost_launched).sum::<f64>() / launched;
+        let gathered = own * free.len() as f64;
+        let cost_gathered = rounds.iter().map(|r| r.cost_gathered).sum::<f64>() / gathered;
         let mut shares = Self::even(sensors);
         if let Some(shared) = cheapest(&needs, cost_launched, cost_gathered) {
             for (&sensor, need) in free.iter().zip(&needs) {
@@ -121,13 +144,13 @@ struct Need {
 }
 
 impl Need {
-    fn of(rounds: &[Round], sensor: usize, exact: f64) -> Self {
+    fn of(rounds: &[Round], walks: u64, sensor: usize, exact: f64) -> Self {
         let (local, from_emitters) = moments(rounds.iter().map(|r| r.launched[sensor]));
         let (looked, from_sensor) = moments(rounds.iter().map(|r| r.gathered[sensor]));
         Self {
             mean: exact + local + looked,
-            launched: from_emitters * LAUNCHED as f64,
-            gathered: from_sensor * GATHERED as f64,
+            launched: from_emitters * LAUNCHED as f64 / EVEN,
+            gathered: from_sensor * walks as f64,
         }
     }
 }
@@ -140,16 +163,16 @@ fn moments(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     (mean, squares / (count - 1.0))
 }
 
-/// The relative variance that walks from the emitters alone may have at the cheapest point, per walk of theirs; `None`
-/// where they bring no sensor any variance.
+/// The variance V that a run with one walk from the emitters is to have at every sensor; `None` where there is none.
 ///
-/// At ε² = V/n the n walks from the emitters leave each sensor W/(V − L) walks of its own for one of theirs, where L and W
-/// are the variances of a walk of either kind. All errors are then ε, and the cost is in proportion to
-/// V c + Σ W/(1 − L/V) c′.
+/// With L and W the relative variances of a walk of either kind, a sensor that takes W/(V − L) walks for one from the emitters
+/// comes to V/n after n of these. To any error the cost is in proportion to V c + Σ W/(1 − L/V) c′. Where walks from the
+/// emitters bring nothing, there are as many from a sensor on average.
 fn cheapest(needs: &[Need], cost_launched: f64, cost_gathered: f64) -> Option<f64> {
     let greatest = needs.iter().map(|n| n.launched).fold(0.0, f64::max);
     if greatest <= 0.0 {
-        return None;
+        let mean = needs.iter().map(|n| n.gathered).sum::<f64>() / needs.len().max(1) as f64;
+        return (mean > 0.0).then_some(mean);
     }
     let cost = |variance: f64| {
         let gathered = needs
@@ -174,6 +197,9 @@ struct Pilot<'a> {
     passes: Passes<'a>,
     channels: Channels,
     receivers: &'a [Receiver],
+    aims: &'a [Aims<'a>],
+    /// Walks from each sensor in one round.
+    walks: u64,
     tried: Allocation,
 }
 
@@ -205,10 +231,13 @@ impl Pilot<'_> {
                 effort += gather::<1>(
                     &self.passes,
                     &self.channels,
-                    &self.receivers[sensor],
-                    self.tried.launched(sensor),
+                    Observer {
+                        receiver: &self.receivers[sensor],
+                        aims: &self.aims[sensor],
+                        launched: self.tried.launched(sensor),
+                    },
                     stream.branch(sensor as u64),
-                    0..GATHERED,
+                    0..self.walks,
                     sums,
                 );
             }
@@ -224,7 +253,7 @@ impl Pilot<'_> {
         };
         Round {
             launched: means(&launched, LAUNCHED),
-            gathered: means(&gathered, GATHERED),
+            gathered: means(&gathered, self.walks),
             cost_launched: RAY * local.rays as f64 + JOIN * local.joins as f64,
             // Every other ray of a walk from a sensor leads to a vertex that may look into mirrors.
             cost_gathered: (RAY + 0.5 * look) * effort.rays as f64,
@@ -263,6 +292,11 @@ mod tests {
         let dear = cheapest(&needs, 1.0, 100.0).unwrap();
         let cheap = cheapest(&needs, 1.0, 1e-3).unwrap();
         assert!(cheap < 1.06 && dear > 4.0, "{cheap} {dear}");
-        assert_eq!(cheapest(&[need(0.0, 1.0)], 1.0, 1.0), None);
+        // Without walks from the emitters the mean share is one.
+        assert_eq!(
+            cheapest(&[need(0.0, 1.0), need(0.0, 2.0)], 1.0, 1.0),
+            Some(1.5)
+        );
+        assert_eq!(cheapest(&[need(0.0, 0.0)], 1.0, 1.0), None);
     }
 }

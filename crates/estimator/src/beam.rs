@@ -133,7 +133,9 @@ fn drop_doubles(edges: &mut Vec<DVec3>) {
     };
     edges.retain(|&edge| {
         let across = last.cross(edge).length_squared();
-        let apart = across > DOUBLE * last.length_squared() * edge.length_squared();
+        // From next to an edge its ends are seen in opposite directions, which no plane tells apart either.
+        let apart =
+            across > DOUBLE * last.length_squared() * edge.length_squared() || last.dot(edge) < 0.0;
         if apart {
             last = edge;
         }

@@ -1,11 +1,12 @@
 //! Which estimator a scene is given, and what each cannot see.
 
+use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::medium::Medium;
-use crate::pass::is_mirrorlike;
+use crate::pass::{Modelled, is_mirrorlike};
 use crate::receiver::Receiver;
 use crate::trace::Techniques;
-use malus_scene::{Estimator, Material};
+use malus_scene::{Estimator, Material, Scene, Settings};
 
 /// A local estimate is not to be trusted where a surface in front of a sensor is nearer than this share of the mean
 /// distance: its variance grows as the inverse square of the distance.
@@ -87,7 +88,15 @@ pub(crate) fn erratic<const N: usize>(engine: &Engine<N>, estimator: Estimator) 
     })
 }
 
-/// The paths that an estimator cannot see in this scene, one sentence each.
+/// The paths that an estimator cannot see in a scene, one sentence each; none where it sees all light.
+#[must_use]
+pub fn unseen(scene: &Scene, settings: &Settings) -> Vec<String> {
+    let emitters = Emitters::new(scene);
+    let modelled = Modelled::alone(scene, settings.model);
+    blind_spots(&modelled.medium(scene, &emitters), settings.estimator)
+}
+
+/// The paths that an estimator cannot see in this medium, one sentence each.
 pub(crate) fn blind_spots(medium: &Medium, estimator: Estimator) -> Vec<String> {
     let mirrors = mirrorlike_names(medium.materials);
     if mirrors.is_empty() {

@@ -47,11 +47,11 @@ pub(crate) fn direct<'a, const N: usize>(
         };
         let walk =
             |medium: Medium<'a>| Walk::from_emitter(medium, Techniques::ALONE, uniforms, &start);
-        let materials = passes.main.materials;
-        let mut main = Carrying::<N>::new(&start);
+        let variation = passes.main.first();
+        let mut main = Carrying::<N>::new(&start, variation);
         let mut scalar = channels
             .along
-            .map(|channel| (Carrying::<1>::new(&start), channel));
+            .map(|channel| (Carrying::<1>::new(&start, variation), channel));
         effort += follow(
             passes.main.surfaces,
             cells,
@@ -69,21 +69,21 @@ pub(crate) fn direct<'a, const N: usize>(
                     }
                 }
                 if let Some(vertex) = arrival.vertex {
-                    main.follow(std::slice::from_ref(vertex), materials, |_, _| {});
+                    main.follow(std::slice::from_ref(vertex), variation, |_, _| {});
                     if let Some((scalar, _)) = &mut scalar {
-                        scalar.follow(std::slice::from_ref(vertex), materials, |_, _| {});
+                        scalar.follow(std::slice::from_ref(vertex), variation, |_, _| {});
                     }
                 }
             },
         );
         if let (Some(medium), Some(channel)) = (passes.apart, channels.apart) {
-            let mut apart = Carrying::<1>::new(&start);
+            let mut apart = Carrying::<1>::new(&start, medium.first());
             effort += follow(medium.surfaces, cells, walk(medium), &start, |arrival| {
                 for cell in arrival.crossed {
                     sums[cell.sensor * channels.count + channel] += apart.flux() / cell.area;
                 }
                 if let Some(vertex) = arrival.vertex {
-                    apart.follow(std::slice::from_ref(vertex), medium.materials, |_, _| {});
+                    apart.follow(std::slice::from_ref(vertex), medium.first(), |_, _| {});
                 }
             });
         }

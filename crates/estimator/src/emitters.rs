@@ -3,6 +3,7 @@
 use crate::direction::{cosine_weighted, in_cone, on_disc};
 use crate::random::{Purpose, Uniforms};
 use crate::reading::Unmet;
+use crate::variation::{Origin, Variation};
 use glam::DVec3;
 use malus_geometry::{Facet, Facets, Surfaces};
 use malus_scene::{Distribution, Material, Scene, Source, SourceKind};
@@ -38,6 +39,8 @@ pub(crate) type State<'a> = Option<(&'a [f64; 4], DVec3)>;
 /// A place of emission that a point looks at.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Site<'a> {
+    /// Who emits there.
+    pub origin: Origin,
     /// Where it is; `None` at infinity.
     pub from: Option<DVec3>,
     /// State of the light.
@@ -204,16 +207,17 @@ impl<'a> Emitters<'a> {
         entries.checked_sub(1).map_or(0.0, |i| self.cumulated[i])
     }
 
-    /// Flux that leaves the emitters, in unit: of what nothing hides; of parallel light, what passes through the great
-    /// circle of the scene.
+    /// Flux that leaves the emitters in a variant, in unit: of what nothing hides; of parallel light, what passes through
+    /// the great circle of the scene.
     #[must_use]
-    pub(crate) fn exposed_flux(&self) -> f64 {
-        let exposed =
-            |&triangle: &u32| self.emission(triangle).0 * self.surfaces.exposed_area(triangle);
-        let sources = self
-            .sources
-            .iter()
-            .map(|source| source_flux(source, self.surfaces));
+    pub(crate) fn exposed_flux(&self, variation: &Variation) -> f64 {
+        let exposed = |&triangle: &u32| {
+            let share = variation.emitted(Origin::Surface(self.surfaces.surface(triangle)));
+            share * self.emission(triangle).0 * self.surfaces.exposed_area(triangle)
+        };
+        let sources = self.sources.iter().enumerate().map(|(index, source)| {
+            variation.emitted(Origin::Source(index)) * source_flux(source, self.surfaces)
+        });
         self.triangles.iter().map(exposed).chain(sources).sum()
     }
 
@@ -285,6 +289,7 @@ impl<'a> Emitters<'a> {
         let normal = self.surfaces.normal(triangle);
         let (exitance, material) = self.emission(triangle);
         Site {
+            origin: Origin::Surface(self.surfaces.surface(triangle)),
             from: Some(position + normal * self.surfaces.offset()),
             state: emitted_state(material),
             inverse: total,
@@ -325,6 +330,7 @@ impl<'a> Emitters<'a> {
             }
         };
         Site {
+            origin: Origin::Source(index),
             from,
             state: state_of(&source.state, source.axis),
             inverse,

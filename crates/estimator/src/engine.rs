@@ -2,12 +2,12 @@
 
 use crate::allocation::Allocation;
 use crate::direct::{Cells, direct};
-use crate::gather::gather;
+use crate::gather::{Aims, Observer, gather};
 use crate::local::local;
 use crate::pass::{Channels, Effort, Passes};
 use crate::random::Stream;
 use crate::receiver::Receiver;
-use crate::statistics::{REPLICAS, Replica, Tally};
+use crate::statistics::{MergeError, REPLICAS, Replica, Tally};
 use rayon::prelude::*;
 
 /// Walks that a step takes in all, so that a watcher is asked several times a second.
@@ -20,12 +20,14 @@ const TASK: usize = 16;
 pub(crate) struct Engine<'a, const N: usize> {
     /// The walks.
     pub passes: Passes<'a>,
-    /// The sums at each sensor.
+    /// The sums of each variant at each sensor.
     pub channels: Channels,
     /// The sensors.
     pub receivers: &'a [Receiver],
     /// Walks from each sensor, relative to those from the emitters.
     pub allocation: &'a Allocation,
+    /// How each sensor aims at small mirrors.
+    pub aims: &'a [Aims<'a>],
     /// The cells in which `direct` counts, where that was asked for.
     pub cells: Option<&'a Cells>,
     /// Seed of all random numbers.
@@ -33,17 +35,24 @@ pub(crate) struct Engine<'a, const N: usize> {
 }
 
 impl<const N: usize> Engine<'_, N> {
-    /// All replicas of a run, empty.
-    #[must_use]
-    pub(crate) fn tally(&self) -> Tally {
+    /// Gives the replicas of a run that begins their sums.
+    ///
+    /// # Errors
+    /// Those of a run that goes on do not fit.
+    pub(crate) fn fit(&self, tally: &mut Tally) -> Result<(), MergeError> {
         // Walks from sensors first, walks from emitters after them: each sum belongs to one kind of walk.
-        Tally::new(0..REPLICAS, 2 * self.length())
+        tally.fit(2 * self.length())
     }
 
     /// Sums of one kind of walk.
     #[must_use]
     pub(crate) fn length(&self) -> usize {
-        self.receivers.len() * self.channels.count
+        self.receivers.len() * self.width()
+    }
+
+    /// Sums of one kind of walk at one sensor.
+    fn width(&self) -> usize {
+        self.passes.main.variations.len() * self.channels.count
     }
 
     /// Walks a replica that make up one step.
@@ -58,33 +67,24 @@ impl<const N: usize> Engine<'_, N> {
     }
 
     /// Takes every replica to `until` walks. Each sum is added to by one task, in the order of the walks.
-    pub(crate) fn advance(&self, tally: &mut Tally, until: u64) -> Effort {
+    pub(crate) fn advance(&self, tally: &mut Tally, until: u64) {
         let replicas: Vec<&mut Replica> = tally.replicas_mut().collect();
         let techniques = self.passes.techniques;
-        let efforts: Vec<Effort> = replicas
-            .into_par_iter()
-            .map(|replica| {
-                let mut effort = Effort::default();
-                if let Some(cells) = self.cells {
-                    effort += self.advance_direct(cells, replica, until);
-                    replica.points = until;
-                    return effort;
-                }
+        replicas.into_par_iter().for_each(|replica| {
+            let mut effort = Effort::default();
+            if let Some(cells) = self.cells {
+                effort += self.advance_direct(cells, replica, until);
+            } else {
                 if techniques.local > 0.0 {
                     effort += self.advance_local(replica, until);
                 }
                 if techniques.gather {
                     effort += self.advance_gather(replica, until);
                 }
-                replica.points = until;
-                effort
-            })
-            .collect();
-        let mut total = Effort::default();
-        for effort in efforts {
-            total += effort;
-        }
-        total
+            }
+            replica.points = until;
+            replica.truncated += effort.truncated;
+        });
     }
 
     fn advance_local(&self, replica: &mut Replica, until: u64) -> Effort {
@@ -117,7 +117,7 @@ impl<const N: usize> Engine<'_, N> {
         let stream = Stream::new(self.seed, replica.id);
         let taken = replica.points;
         let efforts: Vec<Effort> = replica.sums[..self.length()]
-            .par_chunks_mut(self.channels.count)
+            .par_chunks_mut(self.width())
             .zip(self.receivers)
             .enumerate()
             .with_min_len(TASK)
@@ -130,8 +130,11 @@ impl<const N: usize> Engine<'_, N> {
                 gather::<N>(
                     &self.passes,
                     &self.channels,
-                    receiver,
-                    self.allocation.launched(sensor),
+                    Observer {
+                        receiver,
+                        aims: &self.aims[sensor],
+                        launched: self.allocation.launched(sensor),
+                    },
                     stream,
                     walks(taken)..walks(until),
                     sums,

@@ -4,9 +4,11 @@
 //! analyser and gives it out by a Stokes vector of its own, so between chains light is one number.
 
 use crate::emitters::{Start, State};
+use crate::gather::Part;
 use crate::medium::Step;
 use crate::receiver::Receiver;
 use crate::trace::{Connection, Event, Path, Vertex};
+use crate::variation::Variation;
 use glam::DVec3;
 use malus_optics::{
     Analyser, Basis, Carried, Emergence, Incidence, Mueller, Rotator, Sensor, Stokes,
@@ -211,18 +213,27 @@ impl<'r, const N: usize> Gathering<'r, N> {
         self.found
     }
 
+    /// Light met along a piece of a walk.
+    pub(crate) fn read(&mut self, path: &Path, part: Part, variation: &Variation) {
+        match part {
+            Part::Start => self.look(path, variation),
+            Part::Onward => self.follow(path, variation),
+        }
+    }
+
     /// Light that the sensor sees before the walk has left it.
-    pub(crate) fn look(&mut self, path: &Path) {
+    fn look(&mut self, path: &Path, variation: &Variation) {
+        self.chain = Chain::ToSensor(None);
         for connection in &path.connections {
             let chain = self.chain;
-            self.connect(path, connection, chain, 1.0);
+            self.connect(path, connection, chain, 1.0, variation);
         }
     }
 
     /// Light met along the next vertices of the walk.
-    pub(crate) fn follow(&mut self, path: &Path, materials: &[Material]) {
+    fn follow(&mut self, path: &Path, variation: &Variation) {
         for vertex in &path.vertices {
-            let material = &materials[vertex.material as usize];
+            let material = &variation.materials[vertex.material as usize];
             if vertex.emission > 0.0
                 && let Some(emission) = &material.emission
             {
@@ -242,7 +253,7 @@ impl<'r, const N: usize> Gathering<'r, N> {
                     .chain
                     .behind(self.receiver, material, vertex, connection.toward);
                 let weight = scattering * self.receiver.per_exitance;
-                self.connect(path, connection, chain, weight);
+                self.connect(path, connection, chain, weight, variation);
             }
             match vertex.event {
                 Event::Absorbed => return,
@@ -253,13 +264,9 @@ impl<'r, const N: usize> Gathering<'r, N> {
                         .scaled(scattering / vertex.probability);
                 }
                 Event::Mirror | Event::Through => {
-                    let step = Step {
-                        normal: vertex.normal,
-                        arriving: vertex.arriving,
-                        // Divided here: a product of thousands of reflectances has no number, nor has one over it.
-                        matrix: vertex.matrix * (1.0 / vertex.probability),
-                        through: vertex.event == Event::Through,
-                    };
+                    let mut step = variation.step(&passed_at(vertex));
+                    // Divided here: a product of thousands of reflectances has no number, nor has one over it.
+                    step.matrix = step.matrix * (1.0 / vertex.probability);
                     self.chain = self.chain.extended(self.receiver, &step);
                 }
             }
@@ -267,17 +274,35 @@ impl<'r, const N: usize> Gathering<'r, N> {
     }
 
     /// Adds the light of a connection, which goes on by the `chain`.
-    fn connect(&mut self, path: &Path, connection: &Connection, mut chain: Chain<N>, weight: f64) {
+    fn connect(
+        &mut self,
+        path: &Path,
+        connection: &Connection,
+        mut chain: Chain<N>,
+        weight: f64,
+        variation: &Variation,
+    ) {
         for step in &path.steps[connection.steps.clone()] {
-            chain = chain.extended(self.receiver, step);
+            chain = chain.extended(self.receiver, &variation.step(step));
         }
         let light = emitted(connection.leaving, connection.state);
-        let read =
-            chain.pass(self.receiver, connection.leaving, light) * (weight * connection.irradiance);
+        let strength = weight * connection.irradiance * variation.emitted(connection.origin);
+        let read = chain.pass(self.receiver, connection.leaving, light) * strength;
         if connection.mirrored {
             self.found[0] += read.i();
         }
         self.sum += read;
+    }
+}
+
+/// The mirror or the pane by which a walk goes on at a vertex.
+fn passed_at(vertex: &Vertex) -> Step {
+    Step {
+        surface: vertex.material,
+        normal: vertex.normal,
+        arriving: vertex.arriving,
+        matrix: vertex.matrix,
+        through: vertex.event == Event::Through,
     }
 }
 
@@ -293,9 +318,9 @@ pub(crate) struct Carrying<const N: usize> {
 impl<const N: usize> Carrying<N> {
     /// What the emitter sends off.
     #[must_use]
-    pub(crate) fn new(start: &Start) -> Self {
+    pub(crate) fn new(start: &Start, variation: &Variation) -> Self {
         Self {
-            flux: start.flux,
+            flux: start.flux * variation.emitted(start.site.origin),
             light: emitted(start.direction, start.site.state),
         }
     }
@@ -304,14 +329,14 @@ impl<const N: usize> Carrying<N> {
     pub(crate) fn follow(
         &mut self,
         path: &[Vertex],
-        materials: &[Material],
+        variation: &Variation,
         mut told: impl FnMut(usize, f64),
     ) {
         for (index, vertex) in path.iter().enumerate() {
             if vertex.black {
                 return;
             }
-            let material = &materials[vertex.material as usize];
+            let material = &variation.materials[vertex.material as usize];
             let optics = &material.optics;
             let scattering = optics.scattering();
             let mut taken = 0.0;
@@ -329,7 +354,7 @@ impl<const N: usize> Carrying<N> {
                         None
                     };
                 }
-                Event::Mirror | Event::Through => self.pass(vertex),
+                Event::Mirror | Event::Through => self.pass(vertex, variation),
             }
         }
     }
@@ -347,26 +372,22 @@ impl<const N: usize> Carrying<N> {
         self.flux * (row * arriving)
     }
 
-    fn pass(&mut self, vertex: &Vertex) {
-        let through = vertex.event == Event::Through;
-        self.light = Some(passed(
-            self.light,
-            vertex.arriving,
-            vertex.normal,
-            vertex.matrix * (1.0 / vertex.probability),
-            through,
-        ));
+    fn pass(&mut self, vertex: &Vertex, variation: &Variation) {
+        let mut step = variation.step(&passed_at(vertex));
+        step.matrix = step.matrix * (1.0 / vertex.probability);
+        self.light = Some(passed(self.light, &step));
     }
 }
 
 /// Light once it has passed a mirror or a pane, on its way along `arriving`.
-fn passed<const N: usize>(
-    light: Light<N>,
-    arriving: DVec3,
-    normal: DVec3,
-    matrix: malus_optics::Reflection,
-    through: bool,
-) -> (Stokes<N, Carried>, Basis<Carried>) {
+fn passed<const N: usize>(light: Light<N>, step: &Step) -> (Stokes<N, Carried>, Basis<Carried>) {
+    let Step {
+        normal,
+        arriving,
+        matrix,
+        through,
+        ..
+    } = *step;
     let (incidence, reflected) = Basis::mirror(arriving, normal);
     let onward = if through {
         Basis::<Emergence>::new(arriving, incidence.axis())
@@ -386,9 +407,10 @@ pub(crate) fn seen<const N: usize>(
     direction: DVec3,
     state: State,
     steps: &[Step],
+    variation: &Variation,
 ) -> Stokes<N, Sensor> {
     let chain = steps.iter().fold(Chain::ToSensor(None), |chain, step| {
-        chain.extended(receiver, step)
+        chain.extended(receiver, &variation.step(step))
     });
     chain.pass(receiver, direction, emitted(direction, state))
 }
@@ -399,24 +421,27 @@ pub(crate) fn sent<const N: usize>(
     direction: DVec3,
     state: State,
     steps: &[Step],
+    variation: &Variation,
 ) -> Stokes<N, Sensor> {
-    delivered(receiver, direction, emitted(direction, state), steps)
+    let light = emitted(direction, state);
+    delivered(receiver, direction, light, steps, variation)
 }
 
 /// What a scattering surface sends along `direction` to a sensor through mirrors and panes, for unit scattered flux.
 pub(crate) fn joined<const N: usize>(
     receiver: &Receiver,
-    material: &Material,
-    normal: DVec3,
+    vertex: &Vertex,
     direction: DVec3,
     steps: &[Step],
+    variation: &Variation,
 ) -> Stokes<N, Sensor> {
+    let material = &variation.materials[vertex.material as usize];
     let light = if material.optics.polarises_scattering() {
-        scattered(material, normal, direction)
+        scattered(material, vertex.normal, direction)
     } else {
         None
     };
-    delivered(receiver, direction, light, steps)
+    delivered(receiver, direction, light, steps, variation)
 }
 
 fn delivered<const N: usize>(
@@ -424,10 +449,11 @@ fn delivered<const N: usize>(
     direction: DVec3,
     mut light: Light<N>,
     steps: &[Step],
+    variation: &Variation,
 ) -> Stokes<N, Sensor> {
     let mut direction = direction;
     for step in steps {
-        let (next, basis) = passed(light, step.arriving, step.normal, step.matrix, step.through);
+        let (next, basis) = passed(light, &variation.step(step));
         direction = basis.direction();
         light = Some((next, basis));
     }

@@ -5,6 +5,7 @@ use crate::evaluate::seen;
 use crate::medium::Medium;
 use crate::receiver::Receiver;
 use crate::sight::Sight;
+use crate::variation::Variation;
 use glam::DVec3;
 
 /// Irradiance Stokes vector at each receiver from all point, spot and distant sources that it sees and from the surfaces in
@@ -13,19 +14,24 @@ pub(crate) fn straight<const N: usize>(
     medium: &Medium,
     receivers: &[Receiver],
     sight: Option<&Sight>,
+    variation: &Variation,
 ) -> Vec<[f64; N]> {
     receivers
         .iter()
         .enumerate()
         .map(|(sensor, receiver)| {
-            let mut sum = from_sources_at(medium, receiver);
-            sum[0] += sight.map_or(0.0, |s| s.irradiance(sensor, medium.materials));
+            let mut sum = from_sources_at(medium, receiver, variation);
+            sum[0] += sight.map_or(0.0, |s| s.irradiance(sensor, &variation.materials));
             sum
         })
         .collect()
 }
 
-fn from_sources_at<const N: usize>(medium: &Medium, receiver: &Receiver) -> [f64; N] {
+fn from_sources_at<const N: usize>(
+    medium: &Medium,
+    receiver: &Receiver,
+    variation: &Variation,
+) -> [f64; N] {
     let mut sum = [0.0; N];
     if receiver.enclosed {
         return sum;
@@ -42,6 +48,7 @@ fn from_sources_at<const N: usize>(medium: &Medium, receiver: &Receiver) -> [f64
         let square = span.length_squared();
         let toward = span / square.sqrt();
         let irradiance = site.irradiance(-toward, square) * toward.dot(receiver.normal);
+        let irradiance = irradiance * variation.emitted(site.origin);
         // A point at the source itself has no direction to it.
         if !(irradiance > 0.0 && irradiance.is_finite()) {
             continue;
@@ -51,7 +58,7 @@ fn from_sources_at<const N: usize>(medium: &Medium, receiver: &Receiver) -> [f64
             .passage(receiver.origin, site.from, toward, &mut steps)
             .is_some()
         {
-            let light = seen::<N>(receiver, -toward, site.state, &steps);
+            let light = seen::<N>(receiver, -toward, site.state, &steps, variation);
             for (sum, component) in sum.iter_mut().zip(light.components()) {
                 *sum += component * irradiance;
             }

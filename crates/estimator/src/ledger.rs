@@ -12,7 +12,7 @@ use crate::medium::Medium;
 use crate::pass::Passes;
 use crate::random::Stream;
 use crate::results::{Absorbed, Energy};
-use crate::statistics::{Estimate, Means, REPLICAS, Replica, Tally};
+use crate::statistics::{Estimate, Means, MergeError, Replica, Tally};
 use crate::trace::{Path, Techniques, Walk};
 use malus_geometry::Surfaces;
 use malus_scene::{Estimator, Material, Scene};
@@ -25,7 +25,7 @@ const BRANCH: u64 = u64::MAX;
 const SHARE: u64 = 64;
 
 /// Least and most walks a replica.
-const WALKS: [u64; 2] = [16, 4096];
+const WALKS: [u64; 2] = [4, 4096];
 
 /// Which sum holds what; those of the materials follow.
 const ESCAPED: usize = 0;
@@ -34,19 +34,23 @@ const TRUNCATED: usize = 2;
 const MATERIALS: usize = 3;
 
 /// The books of a run.
-pub(crate) struct Ledger {
-    tally: Tally,
+pub(crate) struct Ledger<'t> {
+    tally: &'t Tally,
     emitted: f64,
 }
 
-impl Ledger {
-    /// Keeps books of the main model with a small share of the walks of a run that took `taken` a replica.
-    #[must_use]
+impl<'t> Ledger<'t> {
+    /// Keeps books of the main model with a small share of the walks of a run that took `taken` a replica, in a tally that
+    /// may hold some of them already.
+    ///
+    /// # Errors
+    /// The tally is of another scene.
     pub(crate) fn keep<const N: usize>(
         engine: &Engine<N>,
         estimator: Estimator,
         taken: u64,
-    ) -> Self {
+        tally: &'t mut Tally,
+    ) -> Result<Self, MergeError> {
         let passes = &engine.passes;
         let medium = &passes.main;
         // A walk of the other estimators is joined to every sensor, or begun at every sensor.
@@ -56,19 +60,19 @@ impl Ledger {
         };
         let [least, most] = WALKS;
         let walks = (taken.saturating_mul(joined) / SHARE).clamp(least, most);
-        let mut tally = Tally::new(0..REPLICAS, MATERIALS + medium.materials.len());
+        tally.fit(MATERIALS + medium.materials.len())?;
         let replicas: Vec<&mut Replica> = tally.replicas_mut().collect();
         replicas.into_par_iter().for_each(|replica| {
             let stream = Stream::new(engine.seed, replica.id).branch(BRANCH);
-            for index in 0..walks {
+            for index in replica.points..walks {
                 book::<N>(passes, stream, index, &mut replica.sums);
             }
             replica.points = walks;
         });
-        Self {
+        Ok(Self {
             tally,
-            emitted: medium.emitters.exposed_flux(),
-        }
+            emitted: medium.emitters.exposed_flux(medium.first()),
+        })
     }
 
     /// What the books say, with the materials by the names of the main model.
@@ -132,11 +136,12 @@ fn book<const N: usize>(passes: &Passes, stream: Stream, index: u64, sums: &mut 
     let Some(start) = medium.emitters.start(uniforms) else {
         return;
     };
-    let mut carrying = Carrying::<N>::new(&start);
+    let mut carrying = Carrying::<N>::new(&start, medium.first());
     let mut walk = Walk::from_emitter(*medium, Techniques::ALONE, uniforms, &start);
     let end = journey(&mut walk, &mut Path::default(), |vertex| {
-        sums[MATERIALS + vertex.material as usize] += carrying.absorbed(vertex, medium.materials);
-        carrying.follow(std::slice::from_ref(vertex), medium.materials, |_, _| {});
+        sums[MATERIALS + vertex.material as usize] +=
+            carrying.absorbed(vertex, &medium.first().materials);
+        carrying.follow(std::slice::from_ref(vertex), medium.first(), |_, _| {});
     });
     match end {
         End::Absorbed => {}
@@ -199,7 +204,7 @@ mod tests {
         std::fs::write(&path, toml).unwrap();
         let scene = Scene::load(&path, &[]).unwrap();
         let emitters = Emitters::new(&scene);
-        let modelled = Modelled::new(&scene, Model::Polarised);
+        let modelled = Modelled::alone(&scene, Model::Polarised);
         let passes = Passes {
             main: modelled.medium(&scene, &emitters),
             apart: None,
@@ -207,7 +212,7 @@ mod tests {
         };
         let mut sums = vec![0.0; MATERIALS + scene.materials.len()];
         book::<3>(&passes, Stream::new(1, 0), 0, &mut sums);
-        let flux = emitters.exposed_flux();
+        let flux = emitters.exposed_flux(passes.main.first());
         assert!(flux > 0.0 && (sums[TRUNCATED] / flux - 1.0).abs() < 1e-9);
         assert!(sums[ESCAPED] <= 0.0 && sums[MATERIALS..].iter().sum::<f64>() < 1e-9 * flux);
     }

@@ -7,6 +7,7 @@
 mod allocation;
 mod beam;
 mod choose;
+mod cover;
 mod direct;
 mod direction;
 mod emitters;
@@ -14,6 +15,7 @@ mod engine;
 mod evaluate;
 mod exact;
 mod gather;
+mod glints;
 mod journey;
 mod launched;
 mod ledger;
@@ -29,12 +31,18 @@ mod receiver;
 mod results;
 mod run;
 mod sight;
+mod state;
 mod statistics;
 mod trace;
+mod variation;
 
-pub use picture::{Picture, picture};
+pub use allocation::Allocation;
+pub use choose::unseen;
+pub use picture::{Film, Picture, expose};
 pub use results::{
-    Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Results, Shares, Stop,
+    Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Replicates, Results, Shares, Stop,
 };
-pub use run::run;
+pub use run::{Together, resume, run, run_together};
+pub use state::{NoShard, Shard, State, StateError};
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};
+pub use variation::serves;

@@ -9,12 +9,13 @@ use crate::pass::{Channels, Effort, Passes};
 use crate::random::{Stream, Uniforms};
 use crate::receiver::Receiver;
 use crate::trace::{Path, Techniques, Vertex, Walk};
+use crate::variation::Variation;
 use glam::DVec3;
 use malus_optics::angle_of_incidence;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// Adds the walks `range` to the sums of all sensors.
+/// Adds the walks `range` to the sums of all sensors, at each those of one variant after those of the other.
 pub(crate) fn local<'a, const N: usize>(
     passes: &Passes<'a>,
     channels: &Channels,
@@ -25,6 +26,11 @@ pub(crate) fn local<'a, const N: usize>(
     sums: &mut [f64],
 ) -> Effort {
     let mut effort = Effort::default();
+    let variations = passes.main.variations;
+    let count = channels.count;
+    let width = variations.len() * count;
+    let mut main: Vec<Carrying<N>> = Vec::with_capacity(variations.len());
+    let mut scalar: Vec<Carrying<1>> = Vec::new();
     for index in range {
         let uniforms = stream.walk(index);
         // A start on a hidden part of an emitter carries nothing.
@@ -41,58 +47,78 @@ pub(crate) fn local<'a, const N: usize>(
             allocation,
             uniforms,
         };
-        let mut main = Carrying::<N>::new(&start);
+        restart(&mut main, variations, &start);
         if let Some(channel) = channels.along {
-            let mut scalar = Carrying::<1>::new(&start);
-            effort += joining.follow::<N, 2>(
+            restart(&mut scalar, variations, &start);
+            effort += joining.follow(
                 passes.main,
                 &start,
+                2 * variations.len(),
                 |path, fluxes| {
-                    main.follow(&path.vertices, passes.main.materials, |i, flux| {
-                        fluxes[i][0] = flux
-                    });
-                    scalar.follow(&path.vertices, passes.main.materials, |i, flux| {
-                        fluxes[i][1] = flux
-                    });
+                    carry(&mut main, variations, path, fluxes, 0);
+                    carry(&mut scalar, variations, path, fluxes, variations.len());
                 },
-                |sensor, [one, two], light, scalar| {
-                    let sums = &mut sums[sensor * channels.count..];
-                    add(sums, one, light);
-                    sums[channel] += two * scalar;
+                |sensor, fluxes, arrival| {
+                    let sums = &mut sums[sensor * width..][..width];
+                    let (of_main, of_scalar) = fluxes.split_at(variations.len());
+                    arrival.add::<N>(sums, count, 0, of_main, variations);
+                    arrival.add::<1>(sums, count, channel, of_scalar, variations);
                 },
             );
         } else {
-            effort += joining.follow::<N, 1>(
+            effort += joining.follow(
                 passes.main,
                 &start,
-                |path, fluxes| {
-                    main.follow(&path.vertices, passes.main.materials, |i, flux| {
-                        fluxes[i][0] = flux
-                    });
+                variations.len(),
+                |path, fluxes| carry(&mut main, variations, path, fluxes, 0),
+                |sensor, fluxes, arrival| {
+                    let sums = &mut sums[sensor * width..][..width];
+                    arrival.add::<N>(sums, count, 0, fluxes, variations);
                 },
-                |sensor, [one], light, _| add(&mut sums[sensor * channels.count..], one, light),
             );
         }
         if let (Some(medium), Some(channel)) = (passes.apart, channels.apart) {
-            let mut apart = Carrying::<1>::new(&start);
-            effort += joining.follow::<1, 1>(
+            let variations = medium.variations;
+            restart(&mut scalar, variations, &start);
+            effort += joining.follow(
                 medium,
                 &start,
-                |path, fluxes| {
-                    apart.follow(&path.vertices, medium.materials, |i, flux| {
-                        fluxes[i][0] = flux
-                    });
+                variations.len(),
+                |path, fluxes| carry(&mut scalar, variations, path, fluxes, 0),
+                |sensor, fluxes, arrival| {
+                    let sums = &mut sums[sensor * width..][..width];
+                    arrival.add::<1>(sums, count, channel, fluxes, variations);
                 },
-                |sensor, [one], [light], _| sums[sensor * channels.count + channel] += one * light,
             );
         }
     }
     effort
 }
 
-fn add<const N: usize>(sums: &mut [f64], flux: f64, light: [f64; N]) {
-    for (sum, component) in sums.iter_mut().zip(light) {
-        *sum += flux * component;
+/// Makes room for what one more walk carries in each variant.
+fn restart<const N: usize>(
+    carrying: &mut Vec<Carrying<N>>,
+    variations: &[Variation],
+    start: &Start,
+) {
+    carrying.clear();
+    carrying.extend(variations.iter().map(|it| Carrying::new(start, it)));
+}
+
+/// Carries light along the next piece of a walk; each vertex of `fluxes` takes what the variants scatter there, from the
+/// `first` place on.
+fn carry<const N: usize>(
+    carrying: &mut [Carrying<N>],
+    variations: &[Variation],
+    path: &Path,
+    fluxes: &mut [f64],
+    first: usize,
+) {
+    let width = fluxes.len() / path.vertices.len().max(1);
+    for (index, (carrying, variation)) in carrying.iter_mut().zip(variations).enumerate() {
+        carrying.follow(&path.vertices, variation, |vertex, flux| {
+            fluxes[vertex * width + first + index] = flux;
+        });
     }
 }
 
@@ -107,19 +133,25 @@ fn emit<const N: usize>(
     let Some(normal) = start.normal else {
         return Effort::default();
     };
+    let variations = passes.main.variations;
+    let width = variations.len() * channels.count;
     let mut steps = Vec::new();
-    for (receiver, sums) in receivers.iter().zip(sums.chunks_mut(channels.count)) {
+    for (receiver, sums) in receivers.iter().zip(sums.chunks_mut(width)) {
         steps.clear();
         let way = straight(&passes.main, start.origin, normal, receiver, &mut steps);
         let Some(way) = way else {
             continue;
         };
-        let flux = start.flux * way.coupling;
-        let light = sent::<N>(receiver, way.direction, start.site.state, &steps);
-        add(sums, flux, light.components());
-        for channel in [channels.along, channels.apart].into_iter().flatten() {
-            let light = sent::<1>(receiver, way.direction, None, &steps);
-            sums[channel] += flux * light.i();
+        for (variation, sums) in variations.iter().zip(sums.chunks_mut(channels.count)) {
+            let flux = start.flux * variation.emitted(start.site.origin) * way.coupling;
+            let light = sent::<N>(receiver, way.direction, start.site.state, &steps, variation);
+            for (sum, component) in sums.iter_mut().zip(light.components()) {
+                *sum += flux * component;
+            }
+            for channel in [channels.along, channels.apart].into_iter().flatten() {
+                let light = sent::<1>(receiver, way.direction, None, &steps, variation);
+                sums[channel] += flux * light.i();
+            }
         }
     }
     Effort {
@@ -147,17 +179,65 @@ struct Joined {
     odds: f64,
 }
 
+/// Scattered light on its way from a vertex to a sensor.
+struct Arrival<'j> {
+    receiver: &'j Receiver,
+    vertex: &'j Vertex,
+    /// Direction at the vertex.
+    direction: DVec3,
+    /// Irradiance for one unit of scattered flux, weighted against other techniques, in 1/m².
+    weight: f64,
+    /// Mirrors and panes on the way.
+    steps: &'j [Step],
+    /// Whether what is scattered there is polarised.
+    polarised: bool,
+}
+
+impl Arrival<'_> {
+    /// Adds the light of each variant's flux to its sums, of which there are `count`, from the `channel` on.
+    fn add<const N: usize>(
+        &self,
+        sums: &mut [f64],
+        count: usize,
+        channel: usize,
+        fluxes: &[f64],
+        variations: &[Variation],
+    ) {
+        let of_variants = sums.chunks_mut(count).zip(fluxes.iter().zip(variations));
+        if self.steps.is_empty() && !self.polarised {
+            for (sums, (flux, _)) in of_variants {
+                sums[channel] += flux * self.weight;
+            }
+            return;
+        }
+        for (sums, (flux, variation)) in of_variants {
+            let Self {
+                receiver,
+                vertex,
+                direction,
+                steps,
+                ..
+            } = *self;
+            let light = joined::<N>(receiver, vertex, direction, steps, variation);
+            for (sum, component) in sums[channel..].iter_mut().zip(light.components()) {
+                *sum += flux * self.weight * component;
+            }
+        }
+    }
+}
+
 impl Joining<'_> {
     /// Takes a walk to its end and joins each diffuse vertex to every sensor.
     ///
-    /// `evaluate` fills in the flux that each vertex of a path takes in, for K models; `add` receives the index of a
-    /// sensor, the flux per area there, and the Stokes vector and the intensity that arrive for one unit of it.
-    fn follow<'a, const N: usize, const K: usize>(
+    /// `evaluate` fills in the `width` fluxes that each vertex of a path takes in, of all variants and models; `add`
+    /// receives the index of a sensor, these fluxes, and how they arrive there.
+    fn follow<'a>(
         &self,
         medium: Medium<'a>,
         start: &Start<'a>,
-        mut evaluate: impl FnMut(&Path<'a>, &mut [[f64; K]]),
-        mut add: impl FnMut(usize, [f64; K], [f64; N], f64),
+        width: usize,
+        mut evaluate: impl FnMut(&Path<'a>, &mut [f64]),
+        mut add: impl FnMut(usize, &[f64], &Arrival),
     ) -> Effort {
         let mut walk = Walk::from_emitter(medium, self.techniques, self.uniforms, start);
         let mut effort = Effort::default();
@@ -169,14 +249,14 @@ impl Joining<'_> {
             let more = walk.advance(&mut path);
             effort.rays += path.vertices.len() as u64;
             fluxes.clear();
-            fluxes.resize(path.vertices.len(), [0.0; K]);
+            fluxes.resize(path.vertices.len() * width, 0.0);
             evaluate(&path, &mut fluxes);
-            for (vertex, flux) in path.vertices.iter().zip(&fluxes) {
+            for (vertex, fluxes) in path.vertices.iter().zip(fluxes.chunks(width)) {
                 depth += 1;
-                if flux.iter().any(|&f| f > 0.0) {
+                if fluxes.iter().any(|&f| f > 0.0) {
                     effort.joins += self.receivers.len() as u64;
-                    self.join(&medium, vertex, depth, |sensor, weight, light, scalar| {
-                        add(sensor, flux.map(|f| f * weight), light, scalar);
+                    self.join(&medium, vertex, depth, |sensor, arrival| {
+                        add(sensor, fluxes, arrival);
                     });
                 }
             }
@@ -187,32 +267,21 @@ impl Joining<'_> {
         }
     }
 
-    fn join<const N: usize>(
+    fn join(
         &self,
         medium: &Medium,
         vertex: &Vertex,
         depth: u32,
-        mut add: impl FnMut(usize, f64, [f64; N], f64),
+        mut add: impl FnMut(usize, &Arrival),
     ) {
-        let material = &medium.materials[vertex.material as usize];
-        let polarises = material.optics.polarises_scattering();
+        let cover = &medium.covers[vertex.material as usize];
+        let polarises = cover.polarises_scattering();
         let diffuse = |direction| {
             let (cos, sin2) = angle_of_incidence(direction, vertex.normal);
-            material.optics.diffuse_bound(cos, sin2)
+            cover.diffuse(cos, sin2)
         };
         let even = diffuse(vertex.normal);
         let mut steps: Vec<Step> = Vec::new();
-        let read = |receiver: &Receiver, way: &Joined, steps: &[Step]| {
-            if steps.is_empty() && !polarises {
-                let mut light = [0.0; N];
-                light[0] = 1.0;
-                return (light, 1.0);
-            }
-            let (normal, direction) = (vertex.normal, way.direction);
-            let light = joined::<N>(receiver, material, normal, direction, steps);
-            let scalar = joined::<1>(receiver, material, normal, direction, steps);
-            (light.components(), scalar.i())
-        };
         for (sensor, receiver) in self.receivers.iter().enumerate() {
             steps.clear();
             let way = straight(medium, vertex.position, vertex.normal, receiver, &mut steps);
@@ -230,13 +299,27 @@ impl Joining<'_> {
                             .rival
                             .weight(coupling, diffuse, self.allocation.launched(sensor));
                 }
-                let (light, scalar) = read(receiver, &way, &steps);
-                add(sensor, weight, light, scalar);
+                let arrival = Arrival {
+                    receiver,
+                    vertex,
+                    direction: way.direction,
+                    weight,
+                    steps: &steps,
+                    polarised: polarises,
+                };
+                add(sensor, &arrival);
             }
             if vertex.rival.alone && self.techniques.mirrored && !receiver.enclosed {
                 self.mirrored(medium, vertex, depth, receiver, |way, steps| {
-                    let (light, scalar) = read(receiver, way, steps);
-                    add(sensor, way.coupling, light, scalar);
+                    let arrival = Arrival {
+                        receiver,
+                        vertex,
+                        direction: way.direction,
+                        weight: way.coupling,
+                        steps,
+                        polarised: polarises,
+                    };
+                    add(sensor, &arrival);
                 });
             }
         }
@@ -270,7 +353,7 @@ impl Joining<'_> {
             .mirrors
             .draw(&viewer, &target, self.uniforms, depth, |drawn, inverse| {
                 let mut steps = Vec::new();
-                if let Some((way, _)) = medium.drawn(&viewer, &target, &drawn, &mut steps) {
+                if let Some((way, _)) = medium.drawn(&viewer, &target, drawn, &mut steps) {
                     let cosines = way.start.dot(vertex.normal) * -way.arriving.dot(receiver.normal);
                     let joined = Joined {
                         direction: way.start,

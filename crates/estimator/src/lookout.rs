@@ -80,6 +80,8 @@ pub(crate) struct Lookout {
     cos: f64,
     /// See [`Lookout::coupling`].
     local: f64,
+    /// How often a walk that is aimed at small mirrors goes the way of this one, for one that is not.
+    aimed: f64,
     /// Whether it is the sensor.
     sensor: bool,
 }
@@ -101,6 +103,7 @@ impl Lookout {
             diffuse: 1.0,
             cos: viewer.normal.dot(direction),
             local: 0.0,
+            aimed: 0.0,
             sensor: true,
         }
     }
@@ -116,6 +119,11 @@ impl Lookout {
     /// Goes on by a distance in m.
     pub(crate) fn go(&mut self, distance: f64) {
         self.chain.go(distance);
+    }
+
+    /// Passes a small mirror at which a companion is aimed with this density per solid angle.
+    pub(crate) fn aimed(&mut self, density: f64) {
+        self.aimed = density * PI / self.cos;
     }
 
     /// How often walks from emitters come by a point that this walk has reached and are joined to the sensor there, for
@@ -146,6 +154,7 @@ impl Lookout {
     ) {
         // Between the last point and this one, both ways pass the same distances: only the ends differ.
         self.local = self.coupling(arriving_cos, reverse, walks) / diffuse;
+        self.aimed = 0.0;
         self.sensor = false;
         self.alone = false;
         self.viewer = viewer;
@@ -189,7 +198,7 @@ impl Lookout {
         let by_chance = self.diffuse * self.cos / PI;
         let local = self.local * density;
         if probability <= 0.0 {
-            return 1.0 / (1.0 + local);
+            return 1.0 / (1.0 + local + self.aimed);
         }
         let met = by_chance * self.chain.odds;
         let looked = probability * density * distance * distance / cos;

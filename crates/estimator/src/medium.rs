@@ -1,8 +1,11 @@
 //! What light moves through: surfaces, what they do, and where light comes from.
 
+use crate::cover::{Cover, Odds};
 use crate::emitters::{Emitters, Site};
+use crate::glints::Glints;
 use crate::mirrors::{Drawn, Mirrors, Target, Viewer};
 use crate::random::Fresh;
+use crate::variation::Variation;
 use glam::DVec3;
 use malus_geometry::{Hit, Surfaces};
 use malus_optics::{Reflection, angle_of_incidence};
@@ -13,12 +16,18 @@ use malus_scene::Material;
 pub(crate) struct Medium<'a> {
     /// Where surfaces are.
     pub surfaces: &'a Surfaces,
-    /// What they do to light, by surface index.
+    /// Their materials by surface index, as the first variant has them; emitters are as strong as in any.
     pub materials: &'a [Material],
+    /// What decides how walks go on, by surface index.
+    pub covers: &'a [Cover],
+    /// What they do to light, in each variant that the walks are for.
+    pub variations: &'a [Variation],
     /// Where light comes from.
     pub emitters: &'a Emitters<'a>,
     /// Flat mirrors that can be looked into.
     pub mirrors: &'a Mirrors,
+    /// Mirrors that cannot.
+    pub glints: &'a Glints,
     /// Whether anything lets light through.
     pub panes: bool,
 }
@@ -26,11 +35,13 @@ pub(crate) struct Medium<'a> {
 /// A mirror or a pane on the way of light, met along a direction of tracing.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Step {
+    /// Index of the surface.
+    pub surface: u32,
     /// Unit normal on the side that tracing came from.
     pub normal: DVec3,
     /// Direction of tracing on arrival.
     pub arriving: DVec3,
-    /// What it does to the light, in the basis with the s axis as x.
+    /// What it does to the light in the first variant, in the basis with the s axis as x.
     pub matrix: Reflection,
     /// Whether the light goes on straight.
     pub through: bool,
@@ -43,6 +54,8 @@ pub(crate) struct Meeting<'a> {
     pub index: u32,
     /// The material.
     pub material: &'a Material,
+    /// What decides how a walk goes on.
+    pub cover: &'a Cover,
     /// Whether on the side that emits.
     pub front: bool,
     /// Unit normal on the side met.
@@ -51,17 +64,6 @@ pub(crate) struct Meeting<'a> {
     pub angle: (f64, f64),
     /// The mirror that the triangle is part of, if it is one that can be looked into.
     pub facet: Option<u32>,
-}
-
-/// Probabilities with which a walk goes on, by bounds that hold for any state of light.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Odds {
-    /// Into a random direction.
-    pub diffuse: f64,
-    /// Mirror-like.
-    pub mirror: f64,
-    /// Straight on.
-    pub through: f64,
 }
 
 /// Panes between two points, and the probability with which a walk would pass them.
@@ -104,19 +106,16 @@ impl Meeting<'_> {
 
     /// How a walk that meets the surface like this goes on.
     pub(crate) fn odds(&self, mirror: &Reflection, through: &Reflection) -> Odds {
-        let (cos, sin2) = self.angle;
-        let mirror = mirror.bound().min(1.0);
-        // What is caught between two panes comes back to both at one angle for ever, so there the mirror's share is
-        // kept; a stack of panes is passed once.
-        Odds {
-            diffuse: self.material.optics.diffuse_bound(cos, sin2),
-            mirror,
-            through: through.bound().min(1.0 - mirror),
-        }
+        self.cover.odds(self.angle, mirror, through)
     }
 }
 
 impl<'a> Medium<'a> {
+    /// The first of the variants that the walks are for.
+    pub(crate) fn first(&self) -> &'a Variation {
+        &self.variations[0]
+    }
+
     /// The first surface along a ray.
     pub(crate) fn meet(&self, from: DVec3, direction: DVec3) -> Option<(Hit, Meeting<'a>)> {
         let hit = self.surfaces.nearest(from, direction)?;
@@ -127,6 +126,7 @@ impl<'a> Medium<'a> {
         let meeting = Meeting {
             index,
             material: &self.materials[index as usize],
+            cover: &self.covers[index as usize],
             front,
             normal,
             angle: angle_of_incidence(direction, normal),
@@ -169,6 +169,7 @@ impl<'a> Medium<'a> {
             }
             passage.odds *= odds;
             steps.push(Step {
+                surface: meeting.index,
                 normal: meeting.normal,
                 arriving: toward,
                 matrix,
@@ -213,6 +214,7 @@ impl<'a> Medium<'a> {
                 }
                 odds *= chance;
                 steps.push(Step {
+                    surface: meeting.index,
                     normal: meeting.normal,
                     arriving: toward,
                     matrix,
@@ -284,6 +286,7 @@ impl<'a> Medium<'a> {
             }
             odds *= chance;
             steps.push(Step {
+                surface: meeting.index,
                 normal: meeting.normal,
                 arriving: toward,
                 matrix,
@@ -311,24 +314,21 @@ impl<'a> Medium<'a> {
         Some((way, chain))
     }
 
-    /// The way from a viewer to a target as it was drawn, and the probability of its mirrors; `None` where there is none.
+    /// The way from a viewer to a target as it was drawn, and its mirrors; `None` where there is none.
     pub(crate) fn drawn(
         &self,
         viewer: &Viewer,
         target: &Target,
-        drawn: &Drawn,
+        drawn: Drawn,
         steps: &mut Vec<Step>,
-    ) -> Option<(Way, f64)> {
+    ) -> Option<(Way, Vec<u32>)> {
         match drawn {
             Drawn::Chain(chain) => {
-                let way = self.chained(viewer, target, chain, steps)?;
-                Some((way, self.mirrors.probability(viewer, target, chain)))
+                let way = self.chained(viewer, target, &chain, steps)?;
+                Some((way, chain))
             }
             Drawn::Image(image, mirrors, choices) => {
-                let choices = choices.clone();
-                let (way, chain) =
-                    self.imaged(viewer, target, (*image, *mirrors), choices, steps)?;
-                Some((way, self.mirrors.probability(viewer, target, &chain)))
+                self.imaged(viewer, target, (image, mirrors), choices, steps)
             }
         }
     }

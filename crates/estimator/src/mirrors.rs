@@ -7,12 +7,11 @@
 //! tell once the chain is chosen.
 
 use crate::beam::Beam;
+use crate::cover::Cover;
 use crate::direction::{cosine_weighted, in_cone};
-use crate::pass::is_mirrorlike;
 use crate::random::{Fresh, Uniforms};
 use glam::DVec3;
 use malus_geometry::{Facet, Facets, Surfaces};
-use malus_scene::Material;
 use std::f64::consts::PI;
 
 /// Flat mirrors that are looked into; light in others is met by chance.
@@ -60,8 +59,8 @@ const LEAST_LOOK: f64 = 0.1;
 /// The flat mirrors of a scene, as one model has them.
 pub(crate) struct Mirrors {
     facets: Facets,
-    /// Reflector of each, that of its largest triangle.
-    optics: Vec<malus_optics::Material>,
+    /// Reflectors of each, those of its largest triangle.
+    covers: Vec<Cover>,
     /// Probability with which a vertex of a walk looks into mirrors.
     look: f64,
     /// Diffuse light that is mirrored by what belongs to no facet, as a share of what meets all surfaces.
@@ -106,20 +105,20 @@ pub(crate) enum Drawn {
 }
 
 impl Mirrors {
-    /// The mirrors of a scene whose surfaces have these materials.
-    pub(crate) fn new(surfaces: &Surfaces, materials: &[Material]) -> Self {
-        let wanted: Vec<bool> = materials.iter().map(is_mirrorlike).collect();
+    /// The mirrors of a scene whose surfaces have these reflectors.
+    pub(crate) fn new(surfaces: &Surfaces, covers: &[Cover]) -> Self {
+        let wanted: Vec<bool> = covers.iter().map(Cover::is_mirrorlike).collect();
         let radius = surfaces.radius();
         let least = LEAST * 4.0 * PI * radius * radius;
         let mirrorlike = |triangle| wanted[surfaces.surface(triangle) as usize];
         let facets = Facets::new(surfaces, mirrorlike, least, MOST);
-        let optics: Vec<_> = facets
+        let of_facets: Vec<Cover> = facets
             .list()
             .iter()
-            .map(|facet| materials[surfaces.surface(facet.triangle) as usize].optics)
+            .map(|facet| covers[surfaces.surface(facet.triangle) as usize].clone())
             .collect();
         let (mut seen, mut unseen, mut area) = (0.0, 0.0, 0.0);
-        let reflectances: Vec<f64> = materials.iter().map(|m| reflectance(&m.optics)).collect();
+        let reflectances: Vec<f64> = covers.iter().map(reflectance).collect();
         for triangle in 0..surfaces.len() as u32 {
             let own = surfaces.triangle(triangle).area();
             area += own;
@@ -135,7 +134,7 @@ impl Mirrors {
             unseen: share(unseen),
             look: (LOOK * share(seen)).clamp(LEAST_LOOK, 1.0),
             facets,
-            optics,
+            covers: of_facets,
             spread: SPREAD * radius,
             apart: APART * radius,
         }
@@ -149,9 +148,7 @@ impl Mirrors {
     /// Greatest reflectance of a mirror for light along a ray of any length.
     pub(crate) fn bound(&self, facet: u32, ray: DVec3) -> f64 {
         let cos = (ray.dot(self.facet(facet).normal).abs() / ray.length()).min(1.0);
-        self.optics[facet as usize]
-            .mirror(cos, 1.0 - cos * cos)
-            .bound()
+        self.covers[facet as usize].mirror_bound(cos, 1.0 - cos * cos)
     }
 
     /// The mirror that a triangle is part of.
@@ -424,6 +421,10 @@ impl Mirrors {
             if view.facets.last() == Some(&index) {
                 continue;
             }
+            // Most mirrors do not stand on one side of both.
+            if target.finite && facet.above(beam.apex) * facet.above(target.at) <= 0.0 {
+                continue;
+            }
             let span = if target.finite {
                 facet.image(target.at) - beam.apex
             } else {
@@ -443,9 +444,7 @@ impl Mirrors {
             let square = span.length_squared();
             let toward = span / square.sqrt();
             let cos = toward.dot(facet.normal).abs();
-            let mirror = self.optics[index as usize]
-                .mirror(cos, 1.0 - cos * cos)
-                .bound();
+            let mirror = self.covers[index as usize].mirror_bound(cos, 1.0 - cos * cos);
             let leaving = facet.mirrored(-toward);
             let light = (target.strength)(leaving, square) * toward.dot(beam.normal) * mirror;
             if light > 0.0 && light.is_finite() {
@@ -591,12 +590,12 @@ fn tested(mirrors: u32) -> f64 {
 }
 
 /// Share of diffuse light that a reflector mirrors, for the state of light that it mirrors most of.
-fn reflectance(optics: &malus_optics::Material) -> f64 {
+pub(crate) fn reflectance(cover: &Cover) -> f64 {
     const STEPS: i32 = 32;
     // ∫ R 2μ dμ by the midpoint rule in μ².
     let steps = (0..STEPS).map(|step| {
         let square = (f64::from(step) + 0.5) / f64::from(STEPS);
-        optics.mirror(square.sqrt(), 1.0 - square).bound()
+        cover.mirror_bound(square.sqrt(), 1.0 - square)
     });
     steps.sum::<f64>() / f64::from(STEPS)
 }

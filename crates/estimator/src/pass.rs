@@ -1,9 +1,12 @@
 //! Which models one run computes, and which walks serve which of them.
 
+use crate::cover::Cover;
 use crate::emitters::Emitters;
+use crate::glints::Glints;
 use crate::medium::Medium;
 use crate::mirrors::Mirrors;
 use crate::trace::Techniques;
+use crate::variation::{Variation, covers};
 use malus_optics::Representation;
 use malus_scene::{Material, Model, Scene, Settings};
 use std::ops::AddAssign;
@@ -28,14 +31,13 @@ pub(crate) struct Channels {
 }
 
 impl Channels {
-    /// Layout for a run of the scene with so many components.
+    /// Layout for a run with so many components, of a scene with or without mirrors.
     #[must_use]
-    pub(crate) fn new(scene: &Scene, settings: &Settings, representation: Representation) -> Self {
+    pub(crate) fn new(mirrors: bool, settings: &Settings, representation: Representation) -> Self {
         let components = match settings.model {
             Model::Polarised => representation.components(),
             Model::Scalar | Model::Diffuse => 1,
         };
-        let mirrors = has_mirrors(&scene.materials);
         let mut channels = Self {
             components,
             found: components,
@@ -118,20 +120,34 @@ pub(crate) struct Passes<'a> {
     pub techniques: Techniques,
 }
 
-/// What one model has of a scene: its materials, and the flat mirrors among them.
+/// What one model has of scenes that the same walks serve.
 pub(crate) struct Modelled {
+    /// Materials by which walks are taken.
     materials: Vec<Material>,
+    covers: Vec<Cover>,
+    variations: Vec<Variation>,
     mirrors: Mirrors,
+    glints: Glints,
 }
 
 impl Modelled {
-    /// The scene as a model has it.
-    pub(crate) fn new(scene: &Scene, model: Model) -> Self {
-        let materials = materials_of(model, &scene.materials);
+    /// The scenes as a model has them; emitters are chosen as `covering` has them.
+    pub(crate) fn new(scenes: &[&Scene], covering: &Scene, model: Model) -> Self {
+        let covers = covers(scenes, model);
+        let variation = |scene: &&Scene| Variation::new(scene, covering, model);
+        let mirrors = Mirrors::new(&covering.surfaces, &covers);
         Self {
-            mirrors: Mirrors::new(&scene.surfaces, &materials),
-            materials,
+            glints: Glints::new(&covering.surfaces, &covers, &mirrors),
+            mirrors,
+            materials: materials_of(model, &covering.materials),
+            variations: scenes.iter().map(variation).collect(),
+            covers,
         }
+    }
+
+    /// One scene as a model has it.
+    pub(crate) fn alone(scene: &Scene, model: Model) -> Self {
+        Self::new(&[scene], scene, model)
     }
 
     /// What walks through it move through.
@@ -139,8 +155,11 @@ impl Modelled {
         Medium {
             surfaces: &scene.surfaces,
             materials: &self.materials,
+            covers: &self.covers,
+            variations: &self.variations,
             emitters,
             mirrors: &self.mirrors,
+            glints: &self.glints,
             panes: self.materials.iter().any(|m| m.optics.is_pane()),
         }
     }

@@ -3,17 +3,20 @@
 use crate::choose::techniques;
 use crate::emitters::Emitters;
 use crate::evaluate::Gathering;
-use crate::gather::follow;
+use crate::gather::Way;
 use crate::pass::{Modelled, Passes};
 use crate::random::{Purpose, Stream};
 use crate::receiver::Receiver;
 use crate::results::Answer;
 use crate::run::representation_of;
+use crate::state::Shard;
 use crate::statistics::REPLICAS;
 use crate::trace::Path;
 use malus_optics::Representation;
 use malus_scene::{Camera, Estimator, Scene, Settings};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Walks that a step takes in all, so that a watcher is asked several times a second.
 const STEP: u64 = 1 << 17;
@@ -36,32 +39,97 @@ pub struct Picture {
     pub complete: bool,
 }
 
-/// Takes a picture of a scene: `camera.samples` walks in each pixel, spread evenly over it.
+/// What a camera has taken so far, in bands of whole rows from the top.
 ///
-/// `settings` gives the model, the representation and the seed. `watch` is told the share of the picture that is done, 0
-/// to 1; an answer of [`Answer::Interrupt`] leaves the rest black. A source without geometry has no size, and is not seen
-/// but by what it lights. The same scene, settings and camera give the same picture on any number of threads.
-pub fn picture(
-    scene: &Scene,
-    camera: &Camera,
-    settings: &Settings,
-    watch: &mut dyn FnMut(f64) -> Answer,
-) -> Picture {
-    match representation_of(scene, settings) {
-        Representation::Intensity => taken::<1>(scene, camera, settings, watch),
-        Representation::Linear => taken::<3>(scene, camera, settings, watch),
-        Representation::Full => taken::<4>(scene, camera, settings, watch),
+/// As with [`State`](crate::State), joining two is a union, and what is there depends on nothing but scene, settings and
+/// camera.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct Film {
+    bands: BTreeMap<u32, Band>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Band {
+    stokes: Vec<[f32; 4]>,
+    /// Sum of S0 over the pixels.
+    sum: f64,
+    /// Sum of the squares of its standard errors.
+    variance: f64,
+}
+
+impl Film {
+    /// Union with another part of the same picture; what stands in both is the same in both.
+    pub fn merge(&mut self, mut other: Self) {
+        self.bands.append(&mut other.bands);
+    }
+
+    /// The picture of the camera that the film was in, black where nothing was taken yet.
+    #[must_use]
+    pub fn developed(&self, camera: &Camera) -> Picture {
+        let row = camera.width as usize;
+        let count = row * camera.height as usize;
+        let pixels = rows(camera) * row;
+        let complete = self.bands.len() == count.div_ceil(pixels);
+        let mut stokes = Vec::with_capacity(count);
+        let (mut sum, mut variance) = (0.0, 0.0);
+        for (&number, band) in &self.bands {
+            stokes.resize((number as usize * pixels).min(count), [0.0; 4]);
+            stokes.extend_from_slice(&band.stokes);
+            sum += band.sum;
+            variance += band.variance;
+        }
+        stokes.resize(count, [0.0; 4]);
+        Picture {
+            width: camera.width,
+            height: camera.height,
+            stokes,
+            standard_error: if sum > 0.0 {
+                (variance * count as f64).sqrt() / sum
+            } else {
+                0.0
+            },
+            complete,
+        }
     }
 }
 
-fn taken<const N: usize>(
+/// Rows of a band, so that a watcher is asked several times a second.
+fn rows(camera: &Camera) -> usize {
+    (STEP / (camera.samples.saturating_mul(u64::from(camera.width))).max(1)).max(1) as usize
+}
+
+/// Takes a picture of a scene, or a shard of it: `camera.samples` walks in each pixel, spread evenly over it. What is on
+/// the film already is not taken again.
+///
+/// `settings` gives the model, the representation and the seed. `watch` is told the share that is done, 0 to 1, and may
+/// keep the film as it is between two bands; an answer of [`Answer::Interrupt`] leaves the rest out. A source without
+/// geometry has no size, and is not seen but by what it lights. The same scene, settings and camera give the same picture
+/// on any number of threads and in any number of shards.
+pub fn expose(
     scene: &Scene,
     camera: &Camera,
     settings: &Settings,
-    watch: &mut dyn FnMut(f64) -> Answer,
-) -> Picture {
+    shard: Shard,
+    film: &mut Film,
+    watch: &mut dyn FnMut(f64, &Film) -> Answer,
+) {
+    match representation_of(scene, settings) {
+        Representation::Intensity => take::<1>(scene, camera, settings, shard, film, watch),
+        Representation::Linear => take::<3>(scene, camera, settings, shard, film, watch),
+        Representation::Full => take::<4>(scene, camera, settings, shard, film, watch),
+    }
+}
+
+fn take<const N: usize>(
+    scene: &Scene,
+    camera: &Camera,
+    settings: &Settings,
+    shard: Shard,
+    film: &mut Film,
+    watch: &mut dyn FnMut(f64, &Film) -> Answer,
+) {
     let emitters = Emitters::new(scene);
-    let modelled = Modelled::new(scene, settings.model);
+    let modelled = Modelled::alone(scene, settings.model);
     let passes = Passes {
         main: modelled.medium(scene, &emitters),
         apart: None,
@@ -69,39 +137,40 @@ fn taken<const N: usize>(
     };
     // Beyond the replicas of the sensors, so that no walk is taken twice.
     let stream = Stream::new(settings.seed, REPLICAS);
-    let width = camera.width as usize;
-    let mut picture = Picture {
-        width: camera.width,
-        height: camera.height,
-        stokes: vec![[0.0; 4]; width * camera.height as usize],
-        standard_error: 0.0,
-        complete: true,
-    };
-    let rows = (STEP / (camera.samples * u64::from(camera.width)).max(1)).max(1) as usize;
-    let (mut sum, mut variance) = (0.0, 0.0);
-    let count = picture.stokes.len();
-    for (part, pixels) in picture.stokes.chunks_mut(rows * width).enumerate() {
-        let first = part * rows * width;
-        if watch(first as f64 / count as f64) == Answer::Interrupt {
-            picture.complete = false;
-            break;
+    let row = camera.width as usize;
+    let count = row * camera.height as usize;
+    let pixels = rows(camera) * row;
+    let owned: Vec<u32> = (0..count.div_ceil(pixels) as u32)
+        .filter(|&number| shard.owns(number))
+        .collect();
+    for (done, &number) in owned.iter().enumerate() {
+        if watch(done as f64 / owned.len() as f64, film) == Answer::Interrupt {
+            return;
         }
-        let read: Vec<Pixel<N>> = (first..first + pixels.len())
-            .into_par_iter()
-            .map(|index| pixel(&passes, camera, stream, index))
-            .collect();
-        for (pixel, read) in pixels.iter_mut().zip(read) {
-            for (component, value) in pixel.iter_mut().zip(read.stokes) {
-                *component = value as f32;
-            }
-            sum += read.stokes[0];
-            variance += read.variance;
+        let first = number as usize * pixels;
+        film.bands.entry(number).or_insert_with(|| {
+            let read: Vec<Pixel<N>> = (first..(first + pixels).min(count))
+                .into_par_iter()
+                .map(|index| pixel(&passes, camera, stream, index))
+                .collect();
+            Band::of(&read)
+        });
+    }
+}
+
+impl Band {
+    fn of<const N: usize>(read: &[Pixel<N>]) -> Self {
+        let padded = |pixel: &Pixel<N>| {
+            std::array::from_fn(|component| {
+                pixel.stokes.get(component).copied().unwrap_or(0.0) as f32
+            })
+        };
+        Self {
+            stokes: read.iter().map(padded).collect(),
+            sum: read.iter().map(|pixel| pixel.stokes[0]).sum(),
+            variance: read.iter().map(|pixel| pixel.variance).sum(),
         }
     }
-    if sum > 0.0 {
-        picture.standard_error = (variance * count as f64).sqrt() / sum;
-    }
-    picture
 }
 
 /// A reading of one pixel.
@@ -128,18 +197,16 @@ fn pixel<const N: usize>(
         let direction = camera.direction(column as f64 + u, row as f64 + v);
         let receiver = Receiver::of_radiance(camera.position, direction, camera.right);
         let mut gathering = Gathering::<N>::new(&receiver);
-        follow(
-            passes.techniques,
-            &passes.main,
-            &receiver,
+        let way = Way {
+            techniques: passes.techniques,
+            medium: passes.main,
+            receiver,
             uniforms,
-            &mut path,
-            |path, first| {
-                if !first {
-                    gathering.follow(path, passes.main.materials);
-                }
-            },
-        );
+            aim: None,
+        };
+        way.follow(&mut path, |path, part| {
+            gathering.read(path, part, passes.main.first());
+        });
         let read = gathering.sum();
         squares += read[0] * read[0];
         for (sum, value) in stokes.iter_mut().zip(read) {

@@ -3,26 +3,37 @@
 use crate::allocation::Allocation;
 use crate::pass::Channels;
 use crate::receiver::Receiver;
-use crate::results::{Group, Paired, Reading, Shares};
+use crate::results::{Group, Paired, Reading, Replicates, Shares};
 use crate::statistics::{Estimate, Means, Replica, Tally, degree_of_linear_polarisation};
 use malus_scene::Scene;
 
+/// Components, padded to four.
+pub(crate) fn padded<const N: usize>(stokes: &[f64; N]) -> [f64; 4] {
+    std::array::from_fn(|component| stokes.get(component).copied().unwrap_or(0.0))
+}
+
 /// How the sums of a run are read.
 pub(crate) struct Readings<'a> {
-    scene: &'a Scene,
-    channels: Channels,
-    receivers: &'a [Receiver],
-    allocation: &'a Allocation,
+    pub scene: &'a Scene,
+    pub channels: Channels,
+    pub receivers: &'a [Receiver],
+    pub allocation: &'a Allocation,
     /// What is known without chance, one Stokes vector a sensor; S0 is the same in every model.
-    exact: Vec<[f64; 4]>,
-    unmet: Unmet,
+    pub exact: Vec<[f64; 4]>,
+    /// One entry a sensor.
+    pub unmet: Vec<Unmet>,
+    /// Whether sensors tell each other what they have met.
+    pub shared: bool,
+    /// Which of so many variants is read.
+    pub variant: (usize, usize),
 }
 
 /// Light that a walk from a sensor meets by chance alone, off a mirror, and may not have met yet.
 ///
 /// The spread between replicas tells nothing of what none of them has met. So every standard error counts one more
 /// walk than there were: one that met the brightest emitter in a mirror, which adds its exitance/n in squares, or the
-/// whole of what the emitters could send from half a scene's radius away where that is less.
+/// whole of what the emitters could send from half a scene's radius away where that is less. Where walks are aimed at such
+/// mirrors, all sensors' walks count together, and none takes what it has met for surer than they do on average.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Unmet {
     /// Irradiance that one walk brings that meets the brightest emitter, in unit/m².
@@ -32,42 +43,34 @@ pub(crate) struct Unmet {
 }
 
 impl Unmet {
-    /// The error with that of `walks` walks that have not met what they might.
-    fn widened(self, standard_error: f64, walks: f64) -> f64 {
+    /// The mean over some sensors.
+    fn mean(several: impl ExactSizeIterator<Item = Self>) -> Self {
+        let count = several.len().max(1) as f64;
+        several.fold(Self::default(), |sum, next| Self {
+            one: sum.one + next.one / count,
+            most: sum.most + next.most / count,
+        })
+    }
+
+    /// Variance of so many walks that have not met what they might.
+    fn variance(self, walks: f64) -> f64 {
         let unmet = (self.one / walks).min(self.most);
-        (standard_error * standard_error + unmet * unmet).sqrt()
+        unmet * unmet
     }
 }
 
-impl<'a> Readings<'a> {
-    /// Readings of the scene's sensors, of which the `exact` part is known.
-    #[must_use]
-    pub(crate) fn new<const N: usize>(
-        scene: &'a Scene,
-        channels: Channels,
-        receivers: &'a [Receiver],
-        allocation: &'a Allocation,
-        exact: &[[f64; N]],
-        unmet: Unmet,
-    ) -> Self {
-        let padded = |stokes: &[f64; N]| {
-            std::array::from_fn(|component| stokes.get(component).copied().unwrap_or(0.0))
-        };
-        Self {
-            scene,
-            channels,
-            receivers,
-            allocation,
-            exact: exact.iter().map(padded).collect(),
-            unmet,
-        }
-    }
+/// A standard error with so much variance more.
+fn widened(standard_error: f64, variance: f64) -> f64 {
+    (standard_error * standard_error + variance).sqrt()
+}
 
+impl<'a> Readings<'a> {
     /// What walks from a sensor and walks from the emitters bring it, on average.
     fn parts(&self, means: &Means, sensor: usize, channel: usize) -> [f64; 2] {
-        let index = sensor * self.channels.count + channel;
+        let (variant, variants) = self.variant;
+        let index = (sensor * variants + variant) * self.channels.count + channel;
         let walks = self.allocation.walks(sensor, means.points());
-        let half = self.receivers.len() * self.channels.count;
+        let half = self.receivers.len() * variants * self.channels.count;
         [means.over(index, walks), means.at(half + index)]
     }
 
@@ -91,13 +94,6 @@ impl<'a> Readings<'a> {
             if self.receivers[sensor].enclosed {
                 continue;
             }
-            if std::env::var("DBG").is_ok() && sensor % 9 == 0 {
-                let p = |k: usize| tally.estimate(|m: &Means| self.parts(m, sensor, 0)[k]);
-                let (g, l) = (p(0), p(1));
-                let e = self.exact[sensor][0];
-                let s0 = g.mean + l.mean + e;
-                eprintln!("DBG sensor {sensor} q {:.3} exact {:.3} gather {:.4} +- {:.5} local {:.4} +- {:.5}", 1.0 / self.allocation.launched(sensor), e/s0, g.mean/s0, g.standard_error/s0, l.mean/s0, l.standard_error/s0);
-            }
             let part = |channel: usize, kind: usize| {
                 let read = |means: &Means| self.parts(means, sensor, channel)[kind];
                 tally.estimate(read).mean
@@ -112,44 +108,92 @@ impl<'a> Readings<'a> {
         shares.normalised()
     }
 
-    fn s0(&self, tally: &Tally, sensor: usize) -> Estimate {
+    /// Variance at each sensor that the spread of its own replicas does not tell.
+    fn hidden(&self, tally: &Tally) -> Vec<f64> {
+        let walks: Vec<f64> = (0..self.receivers.len())
+            .map(|sensor| self.walks(tally, sensor))
+            .collect();
+        if !self.shared || self.unmet.iter().all(|u| u.one <= 0.0) {
+            let each = self.unmet.iter().zip(&walks);
+            return each.map(|(unmet, &walks)| unmet.variance(walks)).collect();
+        }
+        let met = |sensor: usize| {
+            let read = |means: &Means| self.parts(means, sensor, self.channels.found + 1)[0];
+            tally.estimate(read).standard_error.powi(2)
+        };
+        let met: Vec<f64> = (0..walks.len()).map(met).collect();
+        let free: Vec<usize> = (0..walks.len())
+            .filter(|&sensor| !self.receivers[sensor].enclosed)
+            .collect();
+        let all: f64 = free.iter().map(|&s| walks[s]).sum();
+        let of_one: f64 = free.iter().map(|&s| met[s] * walks[s]).sum();
+        let of_one = of_one / free.len().max(1) as f64;
+        (0..walks.len())
+            .map(|sensor| {
+                let shared = of_one / walks[sensor].max(1.0);
+                self.unmet[sensor].variance(all.max(1.0)) + (shared - met[sensor]).max(0.0)
+            })
+            .collect()
+    }
+
+    fn s0(&self, tally: &Tally, sensor: usize, hidden: f64) -> Estimate {
         let mut estimate = tally.estimate(|means| self.at(means, sensor, 0));
         estimate.mean += self.exact[sensor][0];
-        let walks = self.walks(tally, sensor);
-        estimate.standard_error = self.unmet.widened(estimate.standard_error, walks);
+        estimate.standard_error = widened(estimate.standard_error, hidden);
         estimate
     }
 
-    /// Largest standard error of S0 as a share of max(S0, 10⁻³ · mean S0) over the free sensors.
+    /// Largest standard error of S0 as a share of max(S0, 10⁻³ · mean S0) over the free sensors; 0 where no light has
+    /// reached any of them, since there is no share of nothing.
     #[must_use]
     pub(crate) fn relative_error(&self, tally: &Tally) -> f64 {
+        let hidden = self.hidden(tally);
         let free: Vec<Estimate> = (0..self.receivers.len())
             .filter(|&sensor| !self.receivers[sensor].enclosed)
-            .map(|sensor| self.s0(tally, sensor))
+            .map(|sensor| self.s0(tally, sensor, hidden[sensor]))
             .collect();
         let mean = free.iter().map(|e| e.mean).sum::<f64>() / free.len().max(1) as f64;
+        if mean <= 0.0 {
+            return 0.0;
+        }
         free.iter()
             .filter(|e| e.standard_error > 0.0)
             .map(|e| e.standard_error / e.mean.max(1e-3 * mean))
             .fold(0.0, f64::max)
     }
 
+    /// Says if no walk has brought light to any of the free sensors.
+    #[must_use]
+    pub(crate) fn dark(&self, tally: &Tally) -> Option<String> {
+        let mut free = (0..self.receivers.len())
+            .filter(|&sensor| !self.receivers[sensor].enclosed)
+            .map(|sensor| self.s0(tally, sensor, 0.0).mean)
+            .peekable();
+        free.peek()?;
+        free.all(|s0| s0 <= 0.0).then(|| {
+            "no light has reached any sensor point: is a lamp inside a closed solid or behind a wall, or does it face away? \
+             Surfaces emit on the side of their normals only"
+                .into()
+        })
+    }
+
     /// Every reading, by sensor group.
     #[must_use]
     pub(crate) fn groups(&self, tally: &Tally) -> Vec<Group> {
         let mut first = 0;
+        let hidden = self.hidden(tally);
         self.scene
             .sensors
             .iter()
             .map(|sensor| {
                 let range = first..first + sensor.points.len();
                 first = range.end;
-                self.group(tally, range)
+                self.group(tally, range, &hidden)
             })
             .collect()
     }
 
-    fn group(&self, tally: &Tally, range: std::ops::Range<usize>) -> Group {
+    fn group(&self, tally: &Tally, range: std::ops::Range<usize>, hidden: &[f64]) -> Group {
         let free: Vec<usize> = range
             .clone()
             .filter(|&sensor| !self.receivers[sensor].enclosed)
@@ -163,23 +207,42 @@ impl<'a> Readings<'a> {
         let main = tally.estimate(|means| mean(means, 0));
         // Points are walked from independently, so a mean over them has as many times the walks.
         let walks: f64 = free.iter().map(|&s| self.walks(tally, s)).sum();
-        let widened = |error| self.unmet.widened(error, walks.max(1.0));
+        let unmet = Unmet::mean(free.iter().map(|&s| self.unmet[s]));
+        let variance = unmet.variance(walks.max(1.0));
+        let widened = |error| widened(error, variance);
         let paired = |channel| Paired::new(tally, exact, channel, mean, widened);
+        let readings: Vec<Reading> = range
+            .clone()
+            .map(|s| self.reading(tally, s, hidden[s]))
+            .collect();
+        let s0 = |sensor: usize| readings[sensor - range.start].stokes[0];
+        let darkest = free
+            .iter()
+            .copied()
+            .min_by(|&a, &b| s0(a).total_cmp(&s0(b)));
+        let at_darkest =
+            |sensor: usize| tally.values(|means| self.at(means, sensor, 0) + self.exact[sensor][0]);
+        let means = |channel| tally.values(|means| mean(means, channel) + exact);
+        let replicates = Replicates {
+            mean: means(0),
+            min: darkest.map_or_else(Vec::new, at_darkest),
+            scalar: self.channels.scalar.map_or_else(Vec::new, means),
+        };
         Group {
-            readings: range.map(|sensor| self.reading(tally, sensor)).collect(),
             mean: main.mean + exact,
             mean_standard_error: widened(main.standard_error),
             scalar: self.channels.scalar.map(paired),
             diffuse: self.channels.diffuse.map(paired),
+            replicates,
+            readings,
         }
     }
 
-    fn reading(&self, tally: &Tally, sensor: usize) -> Reading {
+    fn reading(&self, tally: &Tally, sensor: usize, hidden: f64) -> Reading {
         let enclosed = self.receivers[sensor].enclosed;
-        let walks = self.walks(tally, sensor);
         let widened = |error| match enclosed {
             true => error,
-            false => self.unmet.widened(error, walks),
+            false => widened(error, hidden),
         };
         let mut stokes = self.exact[sensor];
         let mut standard_error = [0.0; 4];
@@ -254,8 +317,8 @@ mod tests {
             most: 0.5,
         };
         // √(0.4² + (30/100)²) = 0.5; at ten walks 30/10 is more than there can be: √(1.2² + 0.5²) = 1.3.
-        assert!((unmet.widened(0.4, 100.0) - 0.5).abs() < 1e-15);
-        assert!((unmet.widened(1.2, 10.0) - 1.3).abs() < 1e-15);
-        assert!((Unmet::default().widened(0.4, 1.0) - 0.4).abs() < 1e-15);
+        assert!((widened(0.4, unmet.variance(100.0)) - 0.5).abs() < 1e-15);
+        assert!((widened(1.2, unmet.variance(10.0)) - 1.3).abs() < 1e-15);
+        assert!((widened(0.4, Unmet::default().variance(1.0)) - 0.4).abs() < 1e-15);
     }
 }

@@ -1,5 +1,6 @@
 //! What a run gives back: a reading at every sensor point, padded to four Stokes components.
 
+use crate::allocation::Allocation;
 use malus_optics::Representation;
 use malus_scene::Estimator;
 
@@ -29,6 +30,8 @@ pub struct Results {
     pub relative_error_max: f64,
     /// What each way of finding light has brought of S0.
     pub shares: Shares,
+    /// How many walks each sensor has taken for one from the emitters.
+    pub allocation: Allocation,
     /// Where the emitted flux goes, in the main model.
     pub energy: Energy,
     /// Paths that the estimator cannot see, walks that were truncated.
@@ -78,6 +81,20 @@ pub struct Group {
     pub scalar: Option<Paired>,
     /// Mean of the diffuse model over the free points, where asked for.
     pub diffuse: Option<Paired>,
+    /// What each replica gave.
+    pub replicates: Replicates,
+}
+
+/// What each replica of a run gave for a sensor group: runs of one seed and number of samples differ by the mean of the
+/// differences, with the standard error of those.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Replicates {
+    /// Mean of S0 over the free points, unit/m².
+    pub mean: Vec<f64>,
+    /// S0 at the free point that has the least of the whole run, unit/m².
+    pub min: Vec<f64>,
+    /// Mean of the scalar model's S0 over the free points, unit/m²; empty where it was not asked for.
+    pub scalar: Vec<f64>,
 }
 
 /// The irradiance Stokes vector at one sensor point, in unit/m².

@@ -6,20 +6,23 @@ use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::exact;
+use crate::gather::Aims;
 use crate::ledger::Ledger;
 use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
-use crate::reading::{Readings, Unmet};
+use crate::reading::{Readings, Unmet, padded};
 use crate::receiver::Receiver;
-use crate::results::{Answer, Progress, Results, Stop};
+use crate::results::{Answer, Group, Progress, Results, Stop};
 use crate::sight::Sight;
+use crate::state::{Shard, State, StateError};
 use crate::statistics::REPLICAS;
 use crate::trace::LONGEST;
+use crate::variation::{Variation, covering};
 use malus_optics::Representation;
 use malus_scene::{Estimator, Model, Scene, Settings};
 
 /// Walks a replica before the first checkpoint: fewer would not tell an error from luck.
-const FIRST_CHECKPOINT: u64 = 16;
+const FIRST_CHECKPOINT: u64 = 8;
 
 /// The first checkpoint after `taken` walks a replica: four to the octave.
 fn next_checkpoint(taken: u64) -> u64 {
@@ -40,11 +43,90 @@ pub fn run(
     settings: &Settings,
     watch: &mut dyn FnMut(&Progress) -> Answer,
 ) -> Results {
-    let representation = representation_of(scene, settings);
-    match representation {
-        Representation::Intensity => run_with::<1>(scene, settings, representation, watch),
-        Representation::Linear => run_with::<3>(scene, settings, representation, watch),
-        Representation::Full => run_with::<4>(scene, settings, representation, watch),
+    let mut state = State::new(Shard::WHOLE);
+    resume(scene, settings, &mut state, &mut |progress, _| {
+        watch(progress)
+    })
+    .expect("a state without walks fits every scene")
+}
+
+/// The same, from a state that an earlier run of the same scene and settings has left, or that parts of it have been
+/// joined to; the stopping rules alone may differ.
+///
+/// `watch` is shown the state between steps, and may keep it: a run that goes on from there has the bytes of one that was
+/// never set aside. Afterwards `state` holds all that was summed. Of a shard, the results are those of its own
+/// replicas.
+///
+/// # Errors
+/// The state does not fit the scene, or has come further than `settings.samples`.
+pub fn resume(
+    scene: &Scene,
+    settings: &Settings,
+    state: &mut State,
+    watch: &mut dyn FnMut(&Progress, &State) -> Answer,
+) -> Result<Results, StateError> {
+    let alone = Ensemble {
+        scenes: &[scene],
+        covering: scene,
+        like: None,
+    };
+    Ok(alone.run(settings, state, watch)?.first)
+}
+
+/// What several scenes give that were evaluated along the same walks.
+#[derive(Debug)]
+pub struct Together {
+    /// The first scene.
+    pub first: Results,
+    /// The sensor groups of the others.
+    pub others: Vec<Vec<Group>>,
+}
+
+/// Evaluates `scenes`, one at least, all of which the same walks [serve](crate::serves), along these.
+///
+/// Stopping rules hold for the first of them. Walks are shared out between the sensors as in `like`, where it is given, so
+/// that the two are paired. Everything else is as in [`run`].
+pub fn run_together(
+    scenes: &[&Scene],
+    settings: &Settings,
+    like: Option<&Allocation>,
+    watch: &mut dyn FnMut(&Progress) -> Answer,
+) -> Together {
+    let covering = covering(scenes);
+    let ensemble = Ensemble {
+        scenes,
+        covering: &covering,
+        like,
+    };
+    let mut state = State::new(Shard::WHOLE);
+    let together = ensemble.run(settings, &mut state, &mut |progress, _| watch(progress));
+    together.expect("a state without walks fits every scene")
+}
+
+/// Scenes that are evaluated along the same walks.
+struct Ensemble<'a> {
+    scenes: &'a [&'a Scene],
+    /// The scene by which emitters are chosen.
+    covering: &'a Scene,
+    /// How walks are shared out; `None`: a pilot finds it.
+    like: Option<&'a Allocation>,
+}
+
+impl Ensemble<'_> {
+    fn run(
+        &self,
+        settings: &Settings,
+        state: &mut State,
+        watch: &mut dyn FnMut(&Progress, &State) -> Answer,
+    ) -> Result<Together, StateError> {
+        let representation = representation_of(self.covering, settings);
+        match representation {
+            Representation::Intensity => {
+                run_with::<1>(self, settings, representation, state, watch)
+            }
+            Representation::Linear => run_with::<3>(self, settings, representation, state, watch),
+            Representation::Full => run_with::<4>(self, settings, representation, state, watch),
+        }
     }
 }
 
@@ -57,19 +139,30 @@ pub(crate) fn representation_of(scene: &Scene, settings: &Settings) -> Represent
 }
 
 fn run_with<const N: usize>(
-    scene: &Scene,
+    ensemble: &Ensemble,
     settings: &Settings,
     representation: Representation,
-    watch: &mut dyn FnMut(&Progress) -> Answer,
-) -> Results {
-    let channels = Channels::new(scene, settings, representation);
+    state: &mut State,
+    watch: &mut dyn FnMut(&Progress, &State) -> Answer,
+) -> Result<Together, StateError> {
+    let limit = settings
+        .samples
+        .map(|samples| samples.div_ceil(u64::from(REPLICAS)).max(1));
+    state.check(limit)?;
+    let Ensemble {
+        scenes,
+        covering: scene,
+        like,
+    } = *ensemble;
+    let mirrors = scenes.iter().any(|it| has_mirrors(&it.materials));
+    let channels = Channels::new(mirrors, settings, representation);
     let emitters = Emitters::new(scene);
     let mut receivers = Receiver::all(scene);
     let (techniques, estimator_reason) = techniques(settings.estimator, &receivers);
-    let main = Modelled::new(scene, settings.model);
+    let main = Modelled::new(scenes, scene, settings.model);
     let apart = channels.apart.map(|_| match settings.model {
-        Model::Diffuse => Modelled::new(scene, Model::Scalar),
-        Model::Polarised | Model::Scalar => Modelled::new(scene, Model::Diffuse),
+        Model::Diffuse => Modelled::new(scenes, scene, Model::Scalar),
+        Model::Polarised | Model::Scalar => Modelled::new(scenes, scene, Model::Diffuse),
     });
     let passes = Passes {
         main: main.medium(scene, &emitters),
@@ -83,77 +176,92 @@ fn run_with<const N: usize>(
     let sight = techniques
         .gather
         .then(|| Sight::new(&scene.surfaces, &emitters, &mut receivers));
-    let exact = match cells {
+    let exact = |variation: &Variation| match cells {
         // Counted like all other light.
         Some(_) => vec![[0.0; N]; receivers.len()],
-        None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref()),
+        None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref(), variation),
     };
-    let allocation = if techniques.gather && techniques.local > 0.0 {
-        let exact = |sensor: usize| exact[sensor][0];
-        Allocation::piloted(&passes, &receivers, exact, settings.seed)
-    } else {
-        Allocation::even(receivers.len())
+    let exact: Vec<Vec<[f64; N]>> = passes.main.variations.iter().map(exact).collect();
+    let aims = Aims::all(&passes, &receivers);
+    let allocation = match like {
+        Some(like) => like.clone(),
+        None if techniques.gather && techniques.local > 0.0 => {
+            let exact = |sensor: usize| exact[0][sensor][0];
+            Allocation::piloted(&passes, &receivers, &aims, exact, settings.seed)
+        }
+        None => Allocation::even(receivers.len()),
     };
     let engine = Engine::<N> {
         passes,
         channels,
         receivers: &receivers,
         allocation: &allocation,
+        aims: &aims,
         cells: cells.as_ref(),
         seed: settings.seed,
     };
     let unmet = match &cells {
-        Some(cells) => direct::unmet(&passes.main, cells),
-        None if techniques.gather => unmet(&passes, &emitters),
-        None => Unmet::default(),
+        Some(cells) => vec![direct::unmet(&passes.main, cells); receivers.len()],
+        None if techniques.gather => unmet(&passes, &emitters, &aims),
+        None => vec![Unmet::default(); receivers.len()],
     };
-    let readings = Readings::new(scene, channels, &receivers, &allocation, &exact, unmet);
+    let readings = |variant: usize| Readings {
+        scene,
+        channels,
+        receivers: &receivers,
+        allocation: &allocation,
+        exact: exact[variant].iter().map(padded).collect(),
+        unmet: unmet.clone(),
+        shared: techniques.mirrored,
+        variant: (variant, scenes.len()),
+    };
+    let first = readings(0);
 
-    let mut tally = engine.tally();
-    let mut taken = 0;
-    let mut truncated = 0;
+    engine.fit(&mut state.walks)?;
+    let mut taken = state.walks.points();
     let mut reached = None;
-    let limit = settings
-        .samples
-        .map(|samples| samples.div_ceil(u64::from(REPLICAS)).max(1));
     let stop = loop {
+        // A run that goes on is judged where it was set aside, too: it may have been right before its end.
+        if taken > 0 {
+            let checkpoint = taken == next_checkpoint(taken - 1) || Some(taken) == limit;
+            if checkpoint {
+                reached = Some(first.relative_error(&state.walks));
+            }
+            let progress = Progress {
+                samples: taken * u64::from(REPLICAS),
+                next_checkpoint: next_checkpoint(taken).min(limit.unwrap_or(u64::MAX))
+                    * u64::from(REPLICAS),
+                samples_limit: limit.map(|n| n * u64::from(REPLICAS)),
+                checkpoint,
+                relative_error: reached,
+                relative_error_goal: settings.relative_error,
+            };
+            let answer = watch(&progress, state);
+            if answer == Answer::Interrupt {
+                break Stop::Interrupted;
+            }
+            if checkpoint {
+                if let (Some(error), Some(goal)) = (reached, settings.relative_error)
+                    && error <= goal
+                {
+                    break Stop::RelativeError;
+                }
+                if Some(taken) == limit {
+                    break Stop::Samples;
+                }
+                if answer == Answer::Enough {
+                    break Stop::Time;
+                }
+            }
+        }
         let checkpoint = next_checkpoint(taken).min(limit.unwrap_or(u64::MAX));
-        let until = checkpoint.min(taken + engine.step());
-        truncated += engine.advance(&mut tally, until).truncated;
-        taken = until;
-        if taken == checkpoint {
-            reached = Some(readings.relative_error(&tally));
-        }
-        let progress = Progress {
-            samples: taken * u64::from(REPLICAS),
-            next_checkpoint: next_checkpoint(taken).min(limit.unwrap_or(u64::MAX))
-                * u64::from(REPLICAS),
-            samples_limit: limit.map(|n| n * u64::from(REPLICAS)),
-            checkpoint: taken == checkpoint,
-            relative_error: reached,
-            relative_error_goal: settings.relative_error,
-        };
-        let answer = watch(&progress);
-        if answer == Answer::Interrupt {
-            break Stop::Interrupted;
-        }
-        if taken == checkpoint {
-            if let (Some(error), Some(goal)) = (reached, settings.relative_error)
-                && error <= goal
-            {
-                break Stop::RelativeError;
-            }
-            if Some(taken) == limit {
-                break Stop::Samples;
-            }
-            if answer == Answer::Enough {
-                break Stop::Time;
-            }
-        }
+        taken = checkpoint.min(taken + engine.step());
+        engine.advance(&mut state.walks, taken);
     };
 
-    let ledger = Ledger::keep(&engine, settings.estimator, taken);
-    let relative_error_max = readings.relative_error(&tally);
+    let ledger = Ledger::keep(&engine, settings.estimator, taken, &mut state.books)?;
+    let tally = &state.walks;
+    let relative_error_max = first.relative_error(tally);
     // The scalar model beside the diffuse one has mirrors of its own.
     let mut warnings: Vec<String> = engine
         .passes
@@ -166,31 +274,42 @@ fn run_with<const N: usize>(
     } else {
         warnings.extend(exact::singular(&engine.passes.main, &receivers));
     }
-    warnings.extend(ledger.leak(scene));
+    warnings.extend(first.dark(tally));
+    warnings.extend(ledger.leak(scenes[0]));
+    let truncated: u64 = tally.replicas().map(|replica| replica.truncated).sum();
     if truncated > 0 {
         warnings.push(format!(
             "{truncated} walks were cut off after {LONGEST} reflections: what they still carried is missing"
         ));
     }
-    Results {
-        groups: readings.groups(&tally),
+    let first = Results {
+        groups: first.groups(tally),
         samples: taken * u64::from(REPLICAS),
         dof: REPLICAS - 1,
         representation,
         representation_reason: representation_reason(scene, settings),
         estimator: settings.estimator,
         estimator_reason: estimator_reason.into(),
-        shares: readings.shares(&tally),
+        shares: first.shares(tally),
+        allocation: allocation.clone(),
         complete: stop != Stop::Interrupted,
         stop,
         relative_error_max,
         energy: ledger.energy(engine.passes.main.materials),
         warnings,
-    }
+    };
+    let others = 1..scenes.len();
+    Ok(Together {
+        others: others
+            .map(|variant| readings(variant).groups(tally))
+            .collect(),
+        first,
+    })
 }
 
-/// What may lie in mirrors that nothing looks into, and has not been met by chance yet.
-fn unmet(passes: &Passes, emitters: &Emitters) -> Unmet {
+/// What may lie for each sensor in mirrors that nothing looks into, and has not been met by chance yet.
+fn unmet(passes: &Passes, emitters: &Emitters, aims: &[Aims]) -> Vec<Unmet> {
+    let all = emitters.unmet();
     let share = |medium: &Medium| {
         if passes.techniques.mirrored {
             medium.mirrors.unseen()
@@ -198,18 +317,17 @@ fn unmet(passes: &Passes, emitters: &Emitters) -> Unmet {
             f64::from(u8::from(has_mirrors(medium.materials)))
         }
     };
-    let share = passes.media().map(share).fold(0.0, f64::max);
-    if std::env::var("DBG").is_ok() { eprintln!("DBG share {share} {:?}", emitters.unmet()); }
-    let unmet = emitters.unmet();
-    if share > 0.0 {
-        // The most that there can be of it is what such mirrors can send on.
-        Unmet {
-            most: unmet.most * share,
-            ..unmet
-        }
-    } else {
-        Unmet::default()
-    }
+    // The most that there can be of it is what such mirrors can send on.
+    let most = passes.media().map(share).fold(0.0, f64::max);
+    let one = |aims: &Aims| match passes.techniques.mirrored {
+        true => aims.greatest(),
+        false => most,
+    };
+    let unmet = |aims: &Aims| Unmet {
+        one: all.one * one(aims),
+        most: all.most * most,
+    };
+    aims.iter().map(unmet).collect()
 }
 
 fn representation_reason(scene: &Scene, settings: &Settings) -> String {
@@ -240,6 +358,6 @@ mod tests {
                 taken
             })
             .collect();
-        assert_eq!(checkpoints, [16, 20, 24, 28, 32, 40, 48, 56, 64, 80]);
+        assert_eq!(checkpoints, [8, 10, 12, 14, 16, 20, 24, 28, 32, 40]);
     }
 }

@@ -4,6 +4,7 @@
 //! their means is the only source of standard errors, so an error stays honest for whatever correlates
 //! the walks inside a replica or the quantities that one walk feeds.
 
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
 
@@ -11,7 +12,7 @@ use thiserror::Error;
 pub const REPLICAS: u32 = 64;
 
 /// The sums of one replica.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Replica {
     /// Which replica.
     pub id: u32,
@@ -57,7 +58,7 @@ pub enum MergeError {
 }
 
 /// A set of replicas of one run. Joining two tallies is a union: no floating-point addition, so no order matters.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tally {
     replicas: BTreeMap<u32, Replica>,
 }
@@ -115,15 +116,55 @@ impl Tally {
         self.replicas.values_mut()
     }
 
-    /// Estimate of any function of a replica's means that is linear in them; `value` is given the means.
+    /// Walks that the first replica has summed; all others have as many unless they were joined from different parts.
+    #[must_use]
+    pub fn points(&self) -> u64 {
+        self.replicas
+            .values()
+            .next()
+            .map_or(0, |first| first.points)
+    }
+
+    /// Gives `length` sums to each replica that has none yet.
     ///
-    /// The standard error is √(Σ (vᵣ − v̄)² / (R (R − 1))), 0 for fewer than two replicas.
-    pub fn estimate(&self, value: impl Fn(&Means) -> f64) -> Estimate {
-        let values: Vec<f64> = self
-            .replicas
+    /// # Errors
+    /// If a replica has another number of them.
+    pub fn fit(&mut self, length: usize) -> Result<(), MergeError> {
+        for replica in self.replicas.values_mut() {
+            if replica.sums.is_empty() && replica.points == 0 {
+                replica.sums = vec![0.0; length];
+            } else if replica.sums.len() != length {
+                return Err(MergeError::Shape {
+                    id: replica.id,
+                    found: replica.sums.len(),
+                    expected: length,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// A function of a replica's means in every replica, in ascending order of their ids.
+    pub fn values(&self, value: impl Fn(&Means) -> f64) -> Vec<f64> {
+        self.replicas
             .values()
             .map(|replica| value(&Means(replica)))
-            .collect();
+            .collect()
+    }
+
+    /// Estimate of any function of a replica's means that is linear in them; `value` is given the means.
+    ///
+    /// The standard error is that of [`Estimate::of`].
+    pub fn estimate(&self, value: impl Fn(&Means) -> f64) -> Estimate {
+        Estimate::of(&self.values(value))
+    }
+}
+
+impl Estimate {
+    /// The mean of what independent replicas gave, with the standard error √(Σ (vᵣ − v̄)² / (R (R − 1))), 0 for fewer than
+    /// two replicas.
+    #[must_use]
+    pub fn of(values: &[f64]) -> Self {
         let count = values.len() as f64;
         let mean = values.iter().sum::<f64>() / count;
         let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
@@ -132,7 +173,7 @@ impl Tally {
         } else {
             (squares / (count * (count - 1.0))).sqrt()
         };
-        Estimate {
+        Self {
             mean,
             standard_error,
         }

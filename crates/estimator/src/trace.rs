@@ -6,6 +6,7 @@
 
 use crate::direction::cosine_weighted;
 use crate::emitters::{Choice, Start, State};
+use crate::glints::Aim;
 use crate::launched::{Launched, Rival};
 use crate::lookout::Lookout;
 use crate::medium::{Medium, Meeting, Step, target};
@@ -13,9 +14,11 @@ use crate::mirrors::Viewer;
 use crate::random::{Purpose, Uniforms};
 use crate::receiver::Receiver;
 use crate::sight::Seen;
+use crate::variation::Origin;
 use glam::DVec3;
 use malus_geometry::Hit;
 use malus_optics::Reflection;
+use std::f64::consts::PI;
 use std::ops::Range;
 
 /// Longest walk, in vertices. What is left of it then is dropped and counted.
@@ -60,6 +63,8 @@ pub(crate) enum Event {
 /// A light seen from a point of a walk.
 #[derive(Debug, Clone)]
 pub(crate) struct Connection<'a> {
+    /// Who sends it.
+    pub origin: Origin,
     /// State of the light.
     pub state: State<'a>,
     /// Unit vector from the point towards it, or towards the first mirror.
@@ -87,7 +92,7 @@ pub(crate) struct Vertex {
     pub arriving: DVec3,
     /// Direction in which it goes on.
     pub onward: DVec3,
-    /// Mirror-like reflection, or what a pane lets through where the walk goes on like that.
+    /// Mirror-like reflection, or what a pane lets through where the walk goes on like that, in the first variant.
     pub matrix: Reflection,
     /// Share of the light that the surface emits towards the walk for which this walk answers: 0 if it emits none.
     pub emission: f64,
@@ -131,13 +136,27 @@ pub(crate) struct Walk<'a> {
     origin: DVec3,
     direction: DVec3,
     depth: u32,
+    /// How walks are aimed at small mirrors from this sensor.
+    aim: Option<&'a Aim<'a>>,
     role: Role<'a>,
     /// True if the walk ended at [`LONGEST`].
     pub truncated: bool,
 }
 
+/// A walk from a sensor that is aimed at a small mirror, and takes the way of its reflection.
+struct Aimed {
+    /// The mirror.
+    triangle: u32,
+    /// Density of the direction for a walk that is not aimed.
+    by_chance: f64,
+    /// Share of the light met for which this walk answers.
+    share: f64,
+}
+
 /// What a walk is for.
 enum Role<'a> {
+    /// It looks for light by mirrors alone, the first of which it was aimed at.
+    Aimed(Aimed),
     /// It carries light from an emitter.
     Launched(Launched<'a>),
     /// It looks for light, from a sensor.
@@ -159,6 +178,7 @@ impl<'a> Walk<'a> {
             origin: start.origin,
             direction: start.direction,
             depth: 0,
+            aim: None,
             role: Role::Launched(Launched::new(start)),
             truncated: false,
         }
@@ -170,6 +190,7 @@ impl<'a> Walk<'a> {
         techniques: Techniques,
         uniforms: Uniforms,
         receiver: &Receiver,
+        aim: Option<&'a Aim<'a>>,
     ) -> Self {
         let Receiver { origin, normal, .. } = *receiver;
         let (direction, lookout) = if receiver.is_irradiance() {
@@ -192,9 +213,38 @@ impl<'a> Walk<'a> {
             origin,
             direction,
             depth: 0,
+            aim,
             role: Role::Looking(lookout),
             truncated: false,
         }
+    }
+
+    /// The companion of a walk from a sensor: aimed at a small mirror, it looks for emitters there. `None` where the mirror
+    /// lies below the horizon.
+    pub(crate) fn aimed(
+        medium: Medium<'a>,
+        techniques: Techniques,
+        uniforms: Uniforms,
+        receiver: &Receiver,
+        aim: &'a Aim<'a>,
+    ) -> Option<Self> {
+        let (triangle, direction) = aim.drawn(uniforms.at(0, Purpose::Glint));
+        let cos = direction.dot(receiver.normal);
+        (cos > 0.0).then(|| Self {
+            medium,
+            techniques,
+            uniforms,
+            origin: receiver.origin,
+            direction,
+            depth: 0,
+            aim: Some(aim),
+            role: Role::Aimed(Aimed {
+                triangle,
+                by_chance: cos / PI,
+                share: 0.0,
+            }),
+            truncated: false,
+        })
     }
 
     /// Appends what the sensor that the walk starts from sees of the emitters.
@@ -240,6 +290,17 @@ impl<'a> Walk<'a> {
         }
         self.depth += 1;
         let (hit, meeting) = self.medium.meet(self.origin, self.direction)?;
+        let emission = self.emission_share(&hit, &meeting);
+        let density = self.aim.map_or(0.0, |aim| {
+            aim.density(hit.triangle, hit.distance, meeting.angle.0)
+        });
+        if let (Role::Aimed(aimed), 1) = (&mut self.role, self.depth) {
+            // What stands before the mirror was not aimed at.
+            if hit.triangle != aimed.triangle {
+                return None;
+            }
+            aimed.share = aimed.by_chance / (aimed.by_chance + density);
+        }
         let normal = meeting.normal;
         let off = normal * self.medium.surfaces.offset();
         let mut vertex = Vertex {
@@ -249,7 +310,7 @@ impl<'a> Walk<'a> {
             arriving: self.direction,
             onward: self.direction,
             matrix: Reflection::NONE,
-            emission: self.emission_share(&hit, &meeting),
+            emission,
             connections: 0..0,
             event: Event::Absorbed,
             probability: 1.0,
@@ -260,12 +321,13 @@ impl<'a> Walk<'a> {
             return Some(vertex);
         }
         let (mirror, through) = meeting.matrices();
-        let odds = meeting.odds(&mirror, &through);
+        let mut odds = meeting.odds(&mirror, &through);
         match &mut self.role {
+            Role::Aimed(_) => odds = odds.of_mirrors(self.depth == 1),
             Role::Launched(launched) => launched.go(hit.distance),
             Role::Looking(lookout) => lookout.go(hit.distance),
         }
-        if meeting.material.optics.scattering() > 0.0 {
+        if odds.diffuse > 0.0 && meeting.cover.scatters() {
             self.join(path, &mut vertex, &meeting, odds.diffuse);
         }
         let [lobe, u, v, _] = self.uniforms.at(self.depth, Purpose::Scatter);
@@ -282,6 +344,7 @@ impl<'a> Walk<'a> {
             };
             let local = self.techniques.local;
             match &mut self.role {
+                Role::Aimed(_) => {}
                 Role::Launched(launched) => launched.scatter(vertex.rival, odds.diffuse, out),
                 Role::Looking(lookout) => {
                     lookout.scatter(
@@ -300,8 +363,14 @@ impl<'a> Walk<'a> {
             vertex.matrix = mirror;
             self.direction = (self.direction + normal * (2.0 * meeting.angle.0)).normalize();
             match &mut self.role {
+                Role::Aimed(_) => {}
                 Role::Launched(launched) => launched.chain.reflect(meeting.facet, odds.mirror),
-                Role::Looking(lookout) => lookout.chain.reflect(meeting.facet, odds.mirror),
+                Role::Looking(lookout) => {
+                    lookout.chain.reflect(meeting.facet, odds.mirror);
+                    if self.depth == 1 {
+                        lookout.aimed(density);
+                    }
+                }
             }
         } else if lobe < odds.diffuse + odds.mirror + odds.through {
             vertex.event = Event::Through;
@@ -309,6 +378,7 @@ impl<'a> Walk<'a> {
             vertex.matrix = through;
             self.origin = hit.position - off;
             match &mut self.role {
+                Role::Aimed(_) => {}
                 Role::Launched(launched) => launched.chain.odds *= odds.through,
                 Role::Looking(lookout) => lookout.chain.odds *= odds.through,
             }
@@ -329,7 +399,7 @@ impl<'a> Walk<'a> {
                 let cos = meeting.angle.0;
                 vertex.rival = launched.rival(&self.medium, self.techniques, viewer, cos);
             }
-            Role::Launched(_) => {}
+            Role::Launched(_) | Role::Aimed(_) => {}
             Role::Looking(lookout) => {
                 let first = path.connections.len();
                 let cos = meeting.angle.0;
@@ -354,6 +424,8 @@ impl<'a> Walk<'a> {
         };
         match &self.role {
             Role::Launched(_) => 0.0,
+            // At first it is the mirror itself that is met, whose own light is not looked for.
+            Role::Aimed(aimed) => aimed.share,
             Role::Looking(lookout) => lookout.emission_share(
                 &self.medium,
                 self.techniques,
@@ -417,6 +489,7 @@ impl<'a> Walk<'a> {
                     .passage(viewer.point, site.from, toward, &mut path.steps)
         {
             path.connections.push(Connection {
+                origin: site.origin,
                 state: site.state,
                 toward,
                 leaving: -toward,
@@ -439,13 +512,19 @@ impl<'a> Walk<'a> {
             self.depth,
             |drawn, inverse| {
                 let first = path.steps.len();
-                let found = self.medium.drawn(&viewer, &target, &drawn, &mut path.steps);
-                let Some((way, probability)) = found else {
+                let found = self.medium.drawn(&viewer, &target, drawn, &mut path.steps);
+                let Some((way, chain)) = found else {
                     path.steps.truncate(first);
                     return;
                 };
+                // Before a single mirror no ray was drawn that the light may differ from.
+                let probability = match chain[..] {
+                    [_] => 1.0 / inverse,
+                    _ => mirrors.probability(&viewer, &target, &chain),
+                };
                 let (toward, leaving) = (way.start, -way.arriving);
                 path.connections.push(Connection {
+                    origin: site.origin,
                     state: site.state,
                     toward,
                     leaving,
@@ -477,11 +556,10 @@ struct Look {
 
 /// Probability with which a walk that came from `direction` would be scattered where this one was met.
 fn bound(meeting: &Meeting, direction: DVec3) -> f64 {
-    let optics = &meeting.material.optics;
-    if optics.polarises_scattering() {
+    if meeting.cover.polarises_scattering() {
         let (cos, sin2) = malus_optics::angle_of_incidence(direction, meeting.normal);
-        optics.diffuse_bound(cos, sin2)
+        meeting.cover.diffuse(cos, sin2)
     } else {
-        optics.diffuse_bound(meeting.angle.0, meeting.angle.1)
+        meeting.cover.diffuse(meeting.angle.0, meeting.angle.1)
     }
 }

@@ -40,11 +40,18 @@ pub struct Facets {
 }
 
 impl Facet {
+    /// Height of a point over the plane, in m.
+    #[must_use]
+    #[inline]
+    pub fn above(&self, point: DVec3) -> f64 {
+        point.dot(self.normal) - self.height
+    }
+
     /// The point mirrored in the plane.
     #[must_use]
     #[inline]
     pub fn image(&self, point: DVec3) -> DVec3 {
-        point - self.normal * (2.0 * (point.dot(self.normal) - self.height))
+        point - self.normal * (2.0 * self.above(point))
     }
 
     /// The direction mirrored in the plane.

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::place::Place;
+use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 use toml::de::{DeTable, DeValue};
@@ -42,9 +43,7 @@ impl Node {
             reason,
         };
         if path.is_dir() {
-            return Err(unreadable(
-                "is a directory, not a scene file (.toml)".into(),
-            ));
+            return Err(unreadable("is a directory, not a file (.toml)".into()));
         }
         let bytes = std::fs::read(path).map_err(|error| {
             unreadable(match error.kind() {
@@ -59,7 +58,7 @@ impl Node {
                 let valid = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
                 Err(Error::Syntax {
                     at: Place::in_text(&file, &valid, valid.len()).to_string(),
-                    message: "a scene file is UTF-8 text, this byte is not".into(),
+                    message: "a TOML file is UTF-8 text, this byte is not".into(),
                 })
             }
         }
@@ -166,6 +165,31 @@ impl Value {
             Self::Date(date) => format!("the date {date}"),
             Self::List(items) => format!("a list of {}", items.len()),
             Self::Table(_) => "a table".into(),
+        }
+    }
+}
+
+impl fmt::Display for Value {
+    /// The value as it may be written, text without its quotes.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let quoted = |node: &Node| match &node.value {
+            Self::Text(text) => format!("{text:?}"),
+            other => other.to_string(),
+        };
+        match self {
+            Self::Text(text) | Self::Date(text) => f.write_str(text),
+            Self::Integer(integer) => write!(f, "{integer}"),
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Flag(flag) => write!(f, "{flag}"),
+            Self::List(items) => {
+                let items: Vec<String> = items.iter().map(quoted).collect();
+                write!(f, "[{}]", items.join(", "))
+            }
+            Self::Table(entries) => {
+                let entry = |entry: &Entry| format!("{} = {}", entry.key, quoted(&entry.node));
+                let entries: Vec<String> = entries.iter().map(entry).collect();
+                write!(f, "{{ {} }}", entries.join(", "))
+            }
         }
     }
 }

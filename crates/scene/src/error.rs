@@ -217,6 +217,14 @@ impl Error {
             _ => Err(Self::Several(errors)),
         }
     }
+
+    /// The errors that this one is made of.
+    pub(crate) fn parts(self) -> Vec<Self> {
+        match self {
+            Self::Several(errors) => errors.into_iter().flat_map(Self::parts).collect(),
+            one => vec![one],
+        }
+    }
 }
 
 /// The first of several errors, and the number of the others.

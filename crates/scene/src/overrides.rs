@@ -4,6 +4,7 @@ use crate::document::{Entry, Node, Value};
 use crate::error::Error;
 use crate::nearest::hint;
 use crate::place::Place;
+use std::fmt;
 
 /// One value in place of the scene file's: `--set material.plaster.a=0.3`.
 ///
@@ -22,21 +23,82 @@ impl Override {
     /// Puts the value into the document, over the one that is there.
     pub(crate) fn apply(&self, document: &mut Node) -> Result<(), Error> {
         let at = Place::Override(format!("{}={}", self.key, self.value).into());
-        let failed = |reason: String, hint: String| Error::Override {
-            at: at.to_string(),
-            reason,
-            hint,
-        };
-        let segments = segments(&self.key)
-            .ok_or_else(|| failed(format!("{:?} is no dotted key", self.key), String::new()))?;
+        let key = Key::parse(&self.key, &at)?;
         let value = Node::value(&self.value, &at)?;
+        key.put(value, &at, document)
+    }
+}
+
+/// A dotted key of the scene file, as its segments.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Key(Vec<String>);
+
+impl Key {
+    /// Reads a dotted key that stands at `at`.
+    pub(crate) fn parse(text: &str, at: &Place) -> Result<Self, Error> {
+        segments(text).map(Self).ok_or_else(|| Error::Override {
+            at: at.to_string(),
+            reason: format!("{text:?} is no dotted key"),
+            hint: String::new(),
+        })
+    }
+
+    /// The key with one more segment, taken as it is.
+    pub(crate) fn below(&self, segment: &str) -> Self {
+        let mut segments = self.0.clone();
+        segments.push(segment.to_owned());
+        Self(segments)
+    }
+
+    /// The segments.
+    pub(crate) fn segments(&self) -> Vec<&str> {
+        self.0.iter().map(String::as_str).collect()
+    }
+
+    /// Puts a value into the document, over the one that is there; `at` is where the key stands.
+    pub(crate) fn put(&self, value: Node, at: &Place, document: &mut Node) -> Result<(), Error> {
         let mut node = document;
-        for (depth, segment) in segments.iter().enumerate() {
-            let so_far = segments[..depth].join(".");
-            node = step(node, segment, &at)
-                .map_err(|(reason, hint)| failed(format!("{so_far:?} {reason}"), hint))?;
+        for (depth, segment) in self.0.iter().enumerate() {
+            let so_far = self.0[..depth].join(".");
+            node = step(node, segment, at).map_err(|(reason, hint)| Error::Override {
+                at: at.to_string(),
+                reason: format!("{so_far:?} {reason}"),
+                hint,
+            })?;
         }
         *node = value;
+        Ok(())
+    }
+
+    /// The value in the document, where there is one.
+    pub(crate) fn find<'a>(&self, document: &'a Node) -> Option<&'a Node> {
+        self.0
+            .iter()
+            .try_fold(document, |node, segment| match &node.value {
+                Value::Table(entries) => {
+                    let entry = entries.iter().find(|entry| entry.key == *segment)?;
+                    Some(&entry.node)
+                }
+                Value::List(items) => {
+                    let named = items
+                        .iter()
+                        .find(|item| name(item).as_deref() == Some(segment.as_str()));
+                    named.or_else(|| items.get(segment.parse::<usize>().ok()?))
+                }
+                _ => None,
+            })
+    }
+}
+
+impl fmt::Display for Key {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (depth, segment) in self.0.iter().enumerate() {
+            let dot = if depth > 0 { "." } else { "" };
+            match segment.contains('.') {
+                true => write!(f, "{dot}\"{segment}\"")?,
+                false => write!(f, "{dot}{segment}")?,
+            }
+        }
         Ok(())
     }
 }
@@ -162,6 +224,24 @@ mod tests {
     fn a_quoted_segment_may_hold_a_dot() {
         let document = apply("material.\"Wall.001\".rho", "0.25").unwrap();
         assert_eq!(found(&document, &["material", "Wall.001", "rho"]), "0.25");
+    }
+
+    #[test]
+    fn a_key_is_written_as_it_is_read_and_finds_its_value() {
+        let document = apply("sensor.desk.frame", "fixed").unwrap();
+        let at = Place::Override("test".into());
+        for (text, expected) in [
+            ("material.\"Wall.001\".rho", Some("0.5")),
+            ("sensor.desk.frame", Some("the string \"fixed\"")),
+            ("sensor.0.points.0.2", Some("1")),
+            ("shape.1.kind", None),
+            ("material.Wall.rho", None),
+        ] {
+            let key = Key::parse(text, &at).unwrap();
+            assert_eq!(key.to_string(), text);
+            let found = key.find(&document).map(|node| node.value.described());
+            assert_eq!(found.as_deref(), expected);
+        }
     }
 
     #[test]

@@ -10,6 +10,9 @@ use glam::DVec3;
 /// Name of the table that is the whole file.
 pub(crate) const WHOLE: &str = "the scene file";
 
+/// Name of the table that is the whole of a study file.
+pub(crate) const STUDY: &str = "the study";
+
 /// A table that is being read.
 pub(crate) struct Reader {
     name: String,
@@ -54,9 +57,9 @@ impl Reader {
         })
     }
 
-    /// A key with its table, as messages name it: `[run] samples`, `shape.0 min`, of the whole file the key alone.
+    /// A key with its table, as messages name it: `[run] samples`, `shape.0 min`, of a whole file the key alone.
     fn path_of(&self, key: &str) -> String {
-        if self.name == WHOLE {
+        if [WHOLE, STUDY].contains(&self.name.as_str()) {
             format!("[{key}]")
         } else {
             format!("{} {key}", self.name)

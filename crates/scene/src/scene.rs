@@ -4,6 +4,7 @@ use crate::appearance::NO_MIRROR;
 use crate::assembly::{Assembly, areas};
 use crate::error::Error;
 use crate::file::SceneFile;
+use crate::foundation::Foundation;
 use crate::import::Import;
 use crate::need::{Need, word};
 use crate::overrides::Override;
@@ -16,15 +17,17 @@ use malus_geometry::Surfaces;
 use malus_optics::Representation;
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A scene, checked: nothing later needs to look at a file again.
+#[derive(Clone)]
 pub struct Scene {
     /// Name for titles and results.
     pub name: String,
     /// Unit of flux.
     pub unit: Unit,
     /// Where surfaces are; `surfaces.surface(triangle)` is an index of `materials`.
-    pub surfaces: Surfaces,
+    pub surfaces: Arc<Surfaces>,
     /// Materials by surface index.
     pub materials: Vec<Material>,
     /// Sources without geometry: those of the scene file, then lamps of mesh files.
@@ -51,7 +54,12 @@ impl Scene {
     /// # Errors
     /// The first things found wrong, each with its place, what was found and what is allowed.
     pub fn load(path: &Path, overrides: &[Override]) -> Result<Self, Error> {
-        let file = SceneFile::read(path, overrides)?;
+        let (scene, _) = Self::founded(SceneFile::read(path, overrides)?, path)?;
+        Ok(scene)
+    }
+
+    /// Loads every file that the scene file names, which stands at `path`; gives the foundation too.
+    pub(crate) fn founded(file: SceneFile, path: &Path) -> Result<(Self, Foundation), Error> {
         let mut warnings = Vec::new();
         let mut imports = each(&file.meshes, Import::load)?;
         for import in &imports {
@@ -75,21 +83,14 @@ impl Scene {
             path: path.display().to_string(),
             reason: Box::new(error),
         })?;
+        let surfaces = Arc::new(surfaces);
         let (materials, doubts) = assembly.materials(&imports, &file.library, &surfaces)?;
         warnings.extend(doubts);
         panes::check(&surfaces, &materials, &assembly.objects, &file.library)?;
         warnings.extend(no_mirrors(&materials));
 
-        let mut sources = file.sources;
-        sources.extend(imports.iter().flat_map(|import| import.lamps.clone()));
-        sources.retain(Source::emits);
-        let exposed = areas(&surfaces, materials.len());
-        let shines =
-            |(material, area): (&Material, &f64)| material.emission.is_some() && *area > 0.0;
-        if sources.is_empty() && !materials.iter().zip(&exposed).any(shines) {
-            let path = path.display().to_string();
-            return Err(Error::NoEmitter { path });
-        }
+        let sources = sources(file.sources, &imports);
+        lit(path, &surfaces, &materials, &sources)?;
         warnings.extend(mixed_units(&imports, &materials));
 
         let (sensors, cameras) = (file.sensors, file.cameras);
@@ -117,7 +118,7 @@ impl Scene {
         warnings.extend(odd_extent(&surfaces));
         let need = Need::of(file.settings.model, &materials, &sources);
         warnings.extend(too_little(&file.settings, &need));
-        Ok(Self {
+        let scene = Self {
             name: file.name,
             unit: file.unit,
             surfaces,
@@ -127,10 +128,11 @@ impl Scene {
             cameras,
             settings: file.settings,
             need,
-            objects: assembly.objects,
+            objects: assembly.objects.clone(),
             coincidences,
             warnings,
-        })
+        };
+        Ok((scene, Foundation { imports, assembly }))
     }
 
     /// Whether the surfaces close the scene, as far as can be seen from its free sensor points.
@@ -150,6 +152,32 @@ impl Scene {
         let asked = self.settings.representation;
         asked.unwrap_or(self.need.representation)
     }
+}
+
+/// Sources of the scene file, then lamps of mesh files, those left out that emit nothing.
+pub(crate) fn sources(of_file: Vec<Source>, imports: &[Import]) -> Vec<Source> {
+    let lamps = imports.iter().flat_map(|import| import.lamps.clone());
+    of_file
+        .into_iter()
+        .chain(lamps)
+        .filter(Source::emits)
+        .collect()
+}
+
+/// Refuses a scene in which nothing emits light.
+pub(crate) fn lit(
+    path: &Path,
+    surfaces: &Surfaces,
+    materials: &[Material],
+    sources: &[Source],
+) -> Result<(), Error> {
+    let exposed = areas(surfaces, materials.len());
+    let shines = |(material, area): (&Material, &f64)| material.emission.is_some() && *area > 0.0;
+    if sources.is_empty() && !materials.iter().zip(&exposed).any(shines) {
+        let path = path.display().to_string();
+        return Err(Error::NoEmitter { path });
+    }
+    Ok(())
 }
 
 /// Applies `read` to every item; all errors are told at once.
@@ -196,7 +224,7 @@ fn resolved(path: &Path, surfaces: &Surfaces) -> Result<(), Error> {
 /// Refuses a closed scene in which light is never lost: there is no steady state to compute.
 ///
 /// A pane that absorbs nothing loses light only where what it lets through leaves.
-fn without_loss(
+pub(crate) fn without_loss(
     path: &Path,
     surfaces: &Surfaces,
     materials: &[Material],

@@ -1,0 +1,181 @@
+//! Variants of a scene that the same walks serve: they differ in what surfaces do to light and how much of it is emitted.
+
+use crate::cover::Cover;
+use crate::medium::Step;
+use crate::pass::materials_of;
+use malus_optics::angle_of_incidence;
+use malus_scene::{Material, Model, Scene, Source, SourceKind};
+use std::sync::Arc;
+
+/// Who emits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// The surface of that index.
+    Surface(u32),
+    /// The source without geometry of that number.
+    Source(usize),
+}
+
+/// One variant, as light meets it along walks that are taken for several.
+#[derive(Debug)]
+pub(crate) struct Variation {
+    /// What surfaces do to light, by surface index.
+    pub materials: Vec<Material>,
+    /// Whether a surface has another reflector than the one whose matrices the walks hold.
+    other: Vec<bool>,
+    /// Emitted light as a share of that by which emitters are chosen, by surface index.
+    of_surfaces: Vec<f64>,
+    /// The same of sources without geometry.
+    of_sources: Vec<f64>,
+}
+
+impl Variation {
+    /// A variant as a model has it, among those that `covering` covers.
+    pub(crate) fn new(scene: &Scene, covering: &Scene, model: Model) -> Self {
+        let materials = materials_of(model, &scene.materials);
+        let recorded = materials_of(model, &covering.materials);
+        let share = |own: f64, all: f64| if all > 0.0 { own / all } else { 0.0 };
+        Self {
+            other: materials
+                .iter()
+                .zip(&recorded)
+                .map(|(own, all)| own.optics != all.optics)
+                .collect(),
+            of_surfaces: materials
+                .iter()
+                .zip(&recorded)
+                .map(|(own, all)| share(exitance(own), exitance(all)))
+                .collect(),
+            of_sources: scene
+                .sources
+                .iter()
+                .zip(&covering.sources)
+                .map(|(own, all)| share(strength(own), strength(all)))
+                .collect(),
+            materials,
+        }
+    }
+
+    /// Light that an emitter sends, as a share of that by which it is chosen.
+    #[inline]
+    pub(crate) fn emitted(&self, origin: Origin) -> f64 {
+        match origin {
+            Origin::Surface(surface) => self.of_surfaces[surface as usize],
+            Origin::Source(source) => self.of_sources[source],
+        }
+    }
+
+    /// A mirror or a pane as this variant has it.
+    #[inline]
+    pub(crate) fn step(&self, step: &Step) -> Step {
+        if !self.other[step.surface as usize] {
+            return *step;
+        }
+        let optics = &self.materials[step.surface as usize].optics;
+        let (cos, sin2) = angle_of_incidence(step.arriving, step.normal);
+        Step {
+            matrix: match step.through {
+                true => optics.through(cos, sin2),
+                false => optics.mirror(cos, sin2),
+            },
+            ..*step
+        }
+    }
+}
+
+/// The reflectors that each surface has in any of the scenes, as a model has them.
+pub(crate) fn covers(scenes: &[&Scene], model: Model) -> Vec<Cover> {
+    let variants: Vec<Vec<Material>> = scenes
+        .iter()
+        .map(|it| materials_of(model, &it.materials))
+        .collect();
+    let surfaces = 0..variants.first().map_or(0, Vec::len);
+    let cover = |surface: usize| Cover::new(variants.iter().map(|it| it[surface].optics));
+    surfaces.map(cover).collect()
+}
+
+/// The scene by which emitters are chosen: the first one, with each emitter as strong as in any.
+pub(crate) fn covering(scenes: &[&Scene]) -> Scene {
+    let mut covering = scenes[0].clone();
+    for scene in &scenes[1..] {
+        for (all, own) in covering.materials.iter_mut().zip(&scene.materials) {
+            if exitance(own) > exitance(all) {
+                all.emission.clone_from(&own.emission);
+            }
+        }
+        for (all, own) in covering.sources.iter_mut().zip(&scene.sources) {
+            if strength(own) > strength(all) {
+                all.clone_from(own);
+            }
+        }
+        if scene.need.representation > covering.need.representation {
+            covering.need = scene.need.clone();
+        }
+    }
+    covering
+}
+
+/// Whether walks through the `scenes`, which serve each other already, serve another one too.
+///
+/// It has to have the same geometry and sensors, emitters and sheets of glass in the same places, and reflectors for
+/// which walks that suit them all are not much worse than its own.
+#[must_use]
+pub fn serves(scenes: &[&Scene], other: &Scene) -> bool {
+    let first = scenes[0];
+    let alike = Arc::ptr_eq(&first.surfaces, &other.surfaces)
+        && first.sensors == other.sensors
+        && first.settings == other.settings
+        && first.materials.len() == other.materials.len()
+        && first.sources.len() == other.sources.len()
+        && scenes.iter().all(|scene| {
+            scene
+                .materials
+                .iter()
+                .zip(&other.materials)
+                .all(|(a, b)| of_one_kind(a, b))
+        })
+        && first
+            .sources
+            .iter()
+            .zip(&other.sources)
+            .all(|(a, b)| even(a) == even(b));
+    let all: Vec<&Scene> = scenes.iter().copied().chain([other]).collect();
+    alike
+        && covers(&all, other.settings.model)
+            .iter()
+            .all(Cover::serves_all)
+}
+
+/// Whether two materials differ in numbers alone.
+fn of_one_kind(one: &Material, other: &Material) -> bool {
+    let states = match (&one.emission, &other.emission) {
+        (Some(one), Some(other)) => {
+            one.state.map(f64::to_bits) == other.state.map(f64::to_bits) && one.axis == other.axis
+        }
+        _ => true,
+    };
+    states
+        && one.two_sided == other.two_sided
+        && std::mem::discriminant(&one.optics) == std::mem::discriminant(&other.optics)
+}
+
+/// A source with a strength of 1.
+fn even(source: &Source) -> Source {
+    let mut even = source.clone();
+    match &mut even.kind {
+        SourceKind::Point { intensity, .. } => *intensity = 1.0,
+        SourceKind::Distant { irradiance, .. } => *irradiance = 1.0,
+    }
+    even
+}
+
+fn exitance(material: &Material) -> f64 {
+    material.emission.as_ref().map_or(0.0, |it| it.exitance)
+}
+
+fn strength(source: &Source) -> f64 {
+    match source.kind {
+        SourceKind::Point { intensity, .. } => intensity,
+        SourceKind::Distant { irradiance, .. } => irradiance,
+    }
+}
