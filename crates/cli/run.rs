@@ -14,7 +14,7 @@ use crate::slurm::Array;
 use crate::submit::Reach;
 use crate::summary::Circumstances;
 use crate::{merge, picture, shards, stop, submit};
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use malus_estimator::Shard;
 use malus_scene::{Scene, Settings};
 use rayon::{ThreadPool, ThreadPoolBuilder};

@@ -28,7 +28,7 @@ const BASE: &str = "base";
 /// # Errors
 /// Bad arguments, a bad scene or study, or variants that failed.
 pub fn sweep(command: &args::Sweep) -> Result<End, Failure> {
-    let threads = threads(command.computing.threads.as_deref())?;
+    let threads = command.computing.threads()?;
     let study = Study::load(&command.study).map_err(|error| command.computing.refused(&error))?;
     let overrides = command.computing.overrides();
     let base = study.base(&overrides);
