@@ -2,7 +2,7 @@
 
 use crate::cli::{Folder, ROOM, stderr};
 use crate::experiment::{s0, scene};
-use malus_estimator::{Answer, Estimate, run, run_together, serves};
+use malus_estimator::{Answer, Cohort, Estimate, run, run_together};
 use malus_scene::{Scene, Settings};
 use std::collections::BTreeMap;
 use std::process::Output;
@@ -312,20 +312,20 @@ pub fn deviation(rooms: &[Scene], seed: u64, samples: u64) -> f64 {
 #[test]
 fn walks_serve_scenes_that_differ_in_numbers_of_their_surfaces_alone() {
     let rooms = varied();
+    let admits = |one: &Scene, other: &Scene| Cohort::of(one).admit(other);
     // Each has surfaces of its own here; a study shares them.
-    assert!(!serves(&[&rooms[0]], &rooms[1]));
-    let shared = rooms.map(|mut it| {
+    assert!(!admits(&rooms[0], &rooms[1]));
+    let shared = |mut it: Scene| {
         it.surfaces = Arc::clone(&SHARED.surfaces);
         it
-    });
-    let [first, others @ ..] = &shared;
-    assert!(others.iter().all(|other| serves(&[first], other)));
+    };
+    let [first, others @ ..] = rooms.map(shared);
+    let mut cohort = Cohort::of(&first);
+    assert!(others.iter().all(|other| cohort.admit(other)));
     // An ideal mirror where another variant has a white wall would leave neither good walks.
-    let mut mirror = room(1.0, 0.0, f64::INFINITY, 3.0);
-    let mut white = room(0.0, 0.95, 1.5, 3.0);
-    mirror.surfaces = Arc::clone(&SHARED.surfaces);
-    white.surfaces = Arc::clone(&SHARED.surfaces);
-    assert!(!serves(&[&mirror], &white) && serves(&[first], &white));
+    let mirror = shared(room(1.0, 0.0, f64::INFINITY, 3.0));
+    let white = shared(room(0.0, 0.95, 1.5, 3.0));
+    assert!(!admits(&mirror, &white) && admits(&first, &white));
 }
 
 static SHARED: LazyLock<Scene> = LazyLock::new(|| room(0.3, 0.5, 1.5, 3.0));

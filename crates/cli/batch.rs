@@ -1,6 +1,6 @@
 //! Variants that the same walks serve, gathered until there are enough of them.
 
-use malus_estimator::{REPLICAS, serves};
+use malus_estimator::{Cohort, REPLICAS};
 use malus_scene::{Estimator, Scene};
 
 /// Variants in one batch, at most: more of them cost as much one by one.
@@ -27,6 +27,7 @@ pub struct Loaded {
 
 /// Variants that the same walks serve.
 pub struct Batch {
+    cohort: Cohort,
     /// The variants.
     pub variants: Vec<Loaded>,
     /// Whether the walks serve the base too: differences to it are then those of the same walks.
@@ -42,21 +43,21 @@ pub struct Batches {
 impl Batches {
     /// Puts a variant to others that the same walks serve; gives back a batch that is full, or the oldest of too many.
     pub fn add(&mut self, base: &Scene, variant: Loaded) -> Option<Batch> {
-        let joins = |batch: &Batch| {
-            let scenes = batch.variants.iter().map(|it| &it.scene);
-            let base = batch.with_base.then_some(base);
-            serves(
-                &base.into_iter().chain(scenes).collect::<Vec<_>>(),
-                &variant.scene,
-            )
-        };
         // Walks that are counted in cells carry the light of one scene.
         let alone = variant.scene.settings.estimator == Estimator::Direct;
-        let place = self.open.iter().position(|batch| !alone && joins(batch));
+        let mut open = self.open.iter_mut();
+        let place = open.position(|batch| !alone && batch.cohort.admit(&variant.scene));
         let place = place.unwrap_or_else(|| {
+            let mut cohort = Cohort::of(base);
+            let with_base = !alone && cohort.admit(&variant.scene);
             self.open.push(Batch {
+                cohort: if with_base {
+                    cohort
+                } else {
+                    Cohort::of(&variant.scene)
+                },
                 variants: Vec::new(),
-                with_base: !alone && serves(&[base], &variant.scene),
+                with_base,
             });
             self.open.len() - 1
         });

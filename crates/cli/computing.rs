@@ -5,9 +5,6 @@ use anyhow::anyhow;
 use clap::Args;
 use malus_scene::{Error, Override};
 
-/// More threads than any machine has cores: beyond, starting them is all that a run would do.
-const MOST_THREADS: usize = 1024;
-
 /// How a scene is to be computed.
 #[derive(Args, Debug)]
 pub struct Computing {
@@ -155,6 +152,9 @@ impl Computing {
         threads(self.threads.as_deref())
     }
 }
+
+/// More threads than any machine has cores: beyond, starting them is all that a run would do.
+const MOST_THREADS: usize = 1024;
 
 /// Number of threads asked for, or as many as there are cores.
 ///

@@ -10,14 +10,13 @@ use crate::outcome::{Measured, Outcome};
 use crate::output::Directory;
 use crate::progress::Reporter;
 use crate::report::{print, warn};
-use crate::run::{End, pool};
+use crate::run::{End, directory, pool};
 use crate::student::half_width_95;
 use crate::variants::Variants;
 use crate::{rows, stop, trade};
 use anyhow::{Result, anyhow, ensure};
 use malus_estimator::{Allocation, Answer, Group, REPLICAS, Results, Together, run_together};
 use malus_scene::{Base, Scene, Settings, Study};
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -36,7 +35,8 @@ pub fn sweep(command: &args::Sweep) -> Result<End, Failure> {
     let base = base.map_err(|error| command.computing.refused(&error))?;
     let mut settings = base.scene.settings.clone();
     stop::narrow(&mut settings, &overrides);
-    let directory = Directory::prepare(&directory(command)).map_err(Failure::run)?;
+    let directory = Directory::prepare(&directory(command.output.as_deref(), &command.study))
+        .map_err(Failure::run)?;
     warn(&base.scene.warnings);
     warn(&base.doubts);
     let pool = pool(threads)?;
@@ -342,12 +342,4 @@ fn measured(groups: &[Group]) -> Vec<Option<Measured>> {
 
 fn names(scene: &Scene) -> impl Iterator<Item = &str> {
     scene.sensors.iter().map(|sensor| sensor.name.as_str())
-}
-
-/// Where the results go.
-fn directory(command: &args::Sweep) -> PathBuf {
-    command.output.clone().unwrap_or_else(|| {
-        let stem = command.study.file_stem().unwrap_or("study".as_ref());
-        Path::new("results").join(stem)
-    })
 }

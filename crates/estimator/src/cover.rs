@@ -84,6 +84,16 @@ impl Cover {
         cover
     }
 
+    /// Whether a reflector is among them.
+    pub(crate) fn holds(&self, optics: &Optics) -> bool {
+        self.optics.contains(optics)
+    }
+
+    /// With one more reflector.
+    pub(crate) fn with(&self, optics: Optics) -> Self {
+        Self::new(self.optics.iter().copied().chain([optics]))
+    }
+
     /// Greatest probability of scattering in any variant.
     #[inline]
     fn scattered(&self, cos: f64, sin2: f64) -> f64 {

@@ -129,7 +129,7 @@ pub(crate) struct Start<'a> {
     pub site: Site<'a>,
 }
 
-fn state_of<'a>(state: &'a [f64; 4], axis: DVec3) -> State<'a> {
+pub(crate) fn state_of<'a>(state: &'a [f64; 4], axis: DVec3) -> State<'a> {
     let polarised = state[1..].iter().any(|&component| component.abs() > 0.0);
     polarised.then_some((state, axis))
 }

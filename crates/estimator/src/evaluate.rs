@@ -3,6 +3,10 @@
 //! Polarisation lives only inside chains of mirrors and panes: a diffuse event takes the light in by an
 //! analyser and gives it out by a Stokes vector of its own, so between chains light is one number.
 
+mod strands;
+
+pub(crate) use strands::Strands;
+
 use crate::emitters::{Start, State};
 use crate::gather::Part;
 use crate::medium::Step;
@@ -11,8 +15,8 @@ use crate::trace::{Connection, Event, Path, Vertex};
 use crate::variation::Variation;
 use glam::DVec3;
 use malus_optics::{
-    Analyser, Basis, Carried, Emergence, Incidence, Mueller, Rotator, Sensor, Stokes,
-    angle_of_incidence,
+    Analyser, Basis, Carried, Emergence, Incidence, Material as Optics, Mueller, Rotator, Sensor,
+    Stokes, angle_of_incidence,
 };
 use malus_scene::Material;
 
@@ -49,21 +53,21 @@ fn leaving(direction: DVec3, normal: DVec3) -> Basis<Emergence> {
 }
 
 /// What a scattering surface sends along `direction`, for unit scattered flux.
-fn scattered<const N: usize>(material: &Material, normal: DVec3, direction: DVec3) -> Light<N> {
+fn scattered<const N: usize>(optics: &Optics, normal: DVec3, direction: DVec3) -> Light<N> {
     let (cos, sin2) = angle_of_incidence(direction, normal);
-    let column = material.optics.leaving::<N>(cos, sin2).carried();
+    let column = optics.leaving::<N>(cos, sin2).carried();
     Some((column, leaving(direction, normal).carried()))
 }
 
 /// What a scattering surface takes in of light that arrives.
 fn taken_in<const N: usize>(
-    material: &Material,
+    optics: &Optics,
     normal: DVec3,
     direction: DVec3,
 ) -> (Analyser<N, Incidence>, Basis<Incidence>) {
     let (cos, sin2) = angle_of_incidence(direction, normal);
     let (incidence, _) = Basis::mirror(direction, normal);
-    (material.optics.entering(cos, sin2), incidence)
+    (optics.entering(cos, sin2), incidence)
 }
 
 /// What a sensor reads of a walk that was started from it.
@@ -159,19 +163,13 @@ impl<const N: usize> Chain<N> {
 
     /// The chain behind a scattering surface that sends light against `arriving`, for light that comes to it against
     /// `toward`.
-    fn behind(
-        &self,
-        receiver: &Receiver,
-        material: &Material,
-        vertex: &Vertex,
-        toward: DVec3,
-    ) -> Self {
+    fn behind(&self, receiver: &Receiver, optics: &Optics, vertex: &Vertex, toward: DVec3) -> Self {
         let direction = -vertex.arriving;
-        if material.optics.polarises_scattering() {
-            let light = scattered(material, vertex.normal, direction);
+        if optics.polarises_scattering() {
+            let light = scattered(optics, vertex.normal, direction);
             return Self::ToDiffuser {
                 leaving: self.pass(receiver, direction, light),
-                row: Some(taken_in(material, vertex.normal, -toward)),
+                row: Some(taken_in(optics, vertex.normal, -toward)),
             };
         }
         Self::ToDiffuser {
@@ -249,9 +247,9 @@ impl<'r, const N: usize> Gathering<'r, N> {
             }
             let scattering = material.optics.scattering();
             for connection in &path.connections[vertex.connections.clone()] {
-                let chain = self
-                    .chain
-                    .behind(self.receiver, material, vertex, connection.toward);
+                let chain =
+                    self.chain
+                        .behind(self.receiver, &material.optics, vertex, connection.toward);
                 let weight = scattering * self.receiver.per_exitance;
                 self.connect(path, connection, chain, weight, variation);
             }
@@ -260,7 +258,7 @@ impl<'r, const N: usize> Gathering<'r, N> {
                 Event::Diffuse => {
                     self.chain = self
                         .chain
-                        .behind(self.receiver, material, vertex, vertex.onward)
+                        .behind(self.receiver, &material.optics, vertex, vertex.onward)
                         .scaled(scattering / vertex.probability);
                 }
                 Event::Mirror | Event::Through => {
@@ -349,7 +347,7 @@ impl<const N: usize> Carrying<N> {
                 Event::Diffuse => {
                     self.flux = taken / vertex.probability;
                     self.light = if optics.polarises_scattering() {
-                        scattered(material, vertex.normal, vertex.onward)
+                        scattered(optics, vertex.normal, vertex.onward)
                     } else {
                         None
                     };
@@ -364,7 +362,7 @@ impl<const N: usize> Carrying<N> {
         if !material.optics.polarises_scattering() {
             return self.flux * self.light.map_or(1.0, |(light, _)| light.i());
         }
-        let (row, incidence) = taken_in::<N>(material, vertex.normal, vertex.arriving);
+        let (row, incidence) = taken_in::<N>(&material.optics, vertex.normal, vertex.arriving);
         let arriving = match self.light {
             Some((light, basis)) => Rotator::new(&basis, &incidence) * light,
             None => Stokes::unpolarised(1.0),
@@ -437,7 +435,7 @@ pub(crate) fn joined<const N: usize>(
 ) -> Stokes<N, Sensor> {
     let material = &variation.materials[vertex.material as usize];
     let light = if material.optics.polarises_scattering() {
-        scattered(material, vertex.normal, direction)
+        scattered(&material.optics, vertex.normal, direction)
     } else {
         None
     };

@@ -1,7 +1,7 @@
 //! Walks from the sensors, against the light: at every vertex one emitter is looked at, straight and in mirrors, and
 //! emitters met by chance count where looking could not, or was less likely to, find them.
 
-use crate::evaluate::Gathering;
+use crate::evaluate::{Gathering, Strands};
 use crate::glints::Aim;
 use crate::medium::Medium;
 use crate::pass::{Channels, Effort, Passes};
@@ -42,9 +42,7 @@ pub(crate) fn gather<const N: usize>(
     };
     let mut effort = Effort::default();
     let mut path = Path::default();
-    let variations = passes.main.variations;
-    let mut main: Vec<Gathering<N>> = Vec::with_capacity(variations.len());
-    let mut scalar: Vec<Gathering<1>> = Vec::new();
+    let count = channels.count;
     for index in range {
         let uniforms = stream.walk(index);
         let way = Way {
@@ -54,68 +52,75 @@ pub(crate) fn gather<const N: usize>(
             uniforms,
             aim: aims.main.as_ref(),
         };
-        restart(&mut main, variations, receiver);
-        if channels.along.is_some() {
-            restart(&mut scalar, variations, receiver);
-        }
-        effort += way.follow(&mut path, |path, part| {
-            read(&mut main, variations, path, part);
-            read(&mut scalar, variations, path, part);
-        });
-        for (gathering, sums) in main.iter().zip(sums.chunks_mut(channels.count)) {
-            for (sum, value) in sums.iter_mut().zip(gathering.sum()) {
-                *sum += value;
-            }
-            for (sum, value) in sums[channels.found..].iter_mut().zip(gathering.found()) {
-                *sum += value;
-            }
-        }
+        let mut main = Reader::<N>::new(receiver, &passes.main);
         if let Some(channel) = channels.along {
-            add(&scalar, sums, channels.count, channel);
+            let mut scalar = Reader::<1>::new(receiver, &passes.main);
+            effort += way.follow(&mut path, |path, part| {
+                main.read(path, part);
+                scalar.read(path, part);
+            });
+            scalar.add(sums, count, channel, None);
+        } else {
+            effort += way.follow(&mut path, |path, part| main.read(path, part));
         }
+        main.add(sums, count, 0, Some(channels.found));
         if let (Some(medium), Some(channel)) = (passes.apart, channels.apart) {
+            let mut apart = Reader::<1>::new(receiver, &medium);
             let way = Way {
                 medium,
                 aim: aims.apart.as_ref(),
                 ..way
             };
-            restart(&mut scalar, medium.variations, receiver);
-            effort += way.follow(&mut path, |path, part| {
-                read(&mut scalar, medium.variations, path, part);
-            });
-            add(&scalar, sums, channels.count, channel);
+            effort += way.follow(&mut path, |path, part| apart.read(path, part));
+            apart.add(sums, count, channel, None);
         }
-        scalar.clear();
     }
     effort
 }
 
-/// Makes room for what the variants read of one more walk.
-fn restart<'r, const N: usize>(
-    gatherings: &mut Vec<Gathering<'r, N>>,
-    variations: &[Variation],
-    receiver: &'r Receiver,
-) {
-    gatherings.clear();
-    gatherings.extend(variations.iter().map(|_| Gathering::new(receiver)));
+/// What a sensor reads of one walk: in one variant, or in several.
+enum Reader<'r, const N: usize> {
+    Alone(Gathering<'r, N>, &'r Variation),
+    Several(Strands<'r, N>),
 }
 
-/// Reads a piece of a walk in every variant.
-fn read<const N: usize>(
-    gatherings: &mut [Gathering<N>],
-    variations: &[Variation],
-    path: &Path,
-    part: Part,
-) {
-    for (gathering, variation) in gatherings.iter_mut().zip(variations) {
-        gathering.read(path, part, variation);
+impl<'r, const N: usize> Reader<'r, N> {
+    /// Nothing read yet.
+    fn new(receiver: &'r Receiver, medium: &Medium<'r>) -> Self {
+        match medium.variations {
+            [alone] => Self::Alone(Gathering::new(receiver), alone),
+            _ => Self::Several(Strands::new(receiver, medium.spread)),
+        }
     }
-}
 
-/// Adds S0 of every variant to its `channel`, of `count` that each has.
-fn add(gatherings: &[Gathering<1>], sums: &mut [f64], count: usize, channel: usize) {
-    for (gathering, sums) in gatherings.iter().zip(sums.chunks_mut(count)) {
-        sums[channel] += gathering.sum()[0];
+    fn read(&mut self, path: &Path, part: Part) {
+        match self {
+            Self::Alone(gathering, variation) => gathering.read(path, part, variation),
+            Self::Several(strands) => strands.read(path, part),
+        }
+    }
+
+    /// Adds what was read to the sums of each variant, of which there are `count`: light from the `channel` on, and where it
+    /// came from, if that is asked for, from the channel `found` on.
+    fn add(&self, sums: &mut [f64], count: usize, channel: usize, found: Option<usize>) {
+        let add = |sums: &mut [f64], light: [f64; N], parts: [f64; 2]| {
+            for (sum, value) in sums[channel..].iter_mut().zip(light) {
+                *sum += value;
+            }
+            if let Some(found) = found {
+                for (sum, value) in sums[found..].iter_mut().zip(parts) {
+                    *sum += value;
+                }
+            }
+        };
+        match self {
+            Self::Alone(gathering, _) => add(sums, gathering.sum(), gathering.found()),
+            Self::Several(strands) => {
+                for (sums, (light, parts)) in sums.chunks_mut(count).zip(strands.readings()) {
+                    add(sums, light, parts);
+                }
+            }
+        }
     }
 }
 

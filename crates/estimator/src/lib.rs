@@ -31,6 +31,7 @@ mod receiver;
 mod results;
 mod run;
 mod sight;
+mod spread;
 mod state;
 mod statistics;
 mod trace;
@@ -45,4 +46,4 @@ pub use results::{
 pub use run::{Together, resume, run, run_together};
 pub use state::{NoShard, Shard, State, StateError};
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};
-pub use variation::serves;
+pub use variation::Cohort;

@@ -5,6 +5,7 @@ use crate::emitters::{Emitters, Site};
 use crate::glints::Glints;
 use crate::mirrors::{Drawn, Mirrors, Target, Viewer};
 use crate::random::Fresh;
+use crate::spread::Spread;
 use crate::variation::Variation;
 use glam::DVec3;
 use malus_geometry::{Hit, Surfaces};
@@ -22,6 +23,8 @@ pub(crate) struct Medium<'a> {
     pub covers: &'a [Cover],
     /// What they do to light, in each variant that the walks are for.
     pub variations: &'a [Variation],
+    /// The same, surface by surface.
+    pub spread: &'a Spread,
     /// Where light comes from.
     pub emitters: &'a Emitters<'a>,
     /// Flat mirrors that can be looked into.

@@ -5,6 +5,7 @@ use crate::emitters::Emitters;
 use crate::glints::Glints;
 use crate::medium::Medium;
 use crate::mirrors::Mirrors;
+use crate::spread::Spread;
 use crate::trace::Techniques;
 use crate::variation::{Variation, covers};
 use malus_optics::Representation;
@@ -126,6 +127,7 @@ pub(crate) struct Modelled {
     materials: Vec<Material>,
     covers: Vec<Cover>,
     variations: Vec<Variation>,
+    spread: Spread,
     mirrors: Mirrors,
     glints: Glints,
 }
@@ -135,12 +137,14 @@ impl Modelled {
     pub(crate) fn new(scenes: &[&Scene], covering: &Scene, model: Model) -> Self {
         let covers = covers(scenes, model);
         let variation = |scene: &&Scene| Variation::new(scene, covering, model);
+        let variations: Vec<Variation> = scenes.iter().map(variation).collect();
         let mirrors = Mirrors::new(&covering.surfaces, &covers);
         Self {
             glints: Glints::new(&covering.surfaces, &covers, &mirrors),
             mirrors,
             materials: materials_of(model, &covering.materials),
-            variations: scenes.iter().map(variation).collect(),
+            spread: Spread::new(&variations),
+            variations,
             covers,
         }
     }
@@ -157,6 +161,7 @@ impl Modelled {
             materials: &self.materials,
             covers: &self.covers,
             variations: &self.variations,
+            spread: &self.spread,
             emitters,
             mirrors: &self.mirrors,
             glints: &self.glints,

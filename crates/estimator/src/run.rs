@@ -82,7 +82,7 @@ pub struct Together {
     pub others: Vec<Vec<Group>>,
 }
 
-/// Evaluates `scenes`, one at least, all of which the same walks [serve](crate::serves), along these.
+/// Evaluates `scenes`, one at least, all of which the same walks serve (see [`Cohort`](crate::Cohort)), along these.
 ///
 /// Stopping rules hold for the first of them. Walks are shared out between the sensors as in `like`, where it is given, so
 /// that the two are paired. Everything else is as in [`run`].

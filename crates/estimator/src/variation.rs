@@ -65,6 +65,11 @@ impl Variation {
         }
     }
 
+    /// Number of sources without geometry.
+    pub(crate) fn sources(&self) -> usize {
+        self.of_sources.len()
+    }
+
     /// A mirror or a pane as this variant has it.
     #[inline]
     pub(crate) fn step(&self, step: &Step) -> Step {
@@ -115,35 +120,61 @@ pub(crate) fn covering(scenes: &[&Scene]) -> Scene {
     covering
 }
 
-/// Whether walks through the `scenes`, which serve each other already, serve another one too.
-///
-/// It has to have the same geometry and sensors, emitters and sheets of glass in the same places, and reflectors for
-/// which walks that suit them all are not much worse than its own.
-#[must_use]
-pub fn serves(scenes: &[&Scene], other: &Scene) -> bool {
-    let first = scenes[0];
-    let alike = Arc::ptr_eq(&first.surfaces, &other.surfaces)
-        && first.sensors == other.sensors
-        && first.settings == other.settings
-        && first.materials.len() == other.materials.len()
-        && first.sources.len() == other.sources.len()
-        && scenes.iter().all(|scene| {
-            scene
-                .materials
-                .iter()
-                .zip(&other.materials)
-                .all(|(a, b)| of_one_kind(a, b))
-        })
-        && first
-            .sources
-            .iter()
-            .zip(&other.sources)
-            .all(|(a, b)| even(a) == even(b));
-    let all: Vec<&Scene> = scenes.iter().copied().chain([other]).collect();
-    alike
-        && covers(&all, other.settings.model)
-            .iter()
-            .all(Cover::serves_all)
+/// Scenes that the same walks serve: they have one geometry, the same sensors, emitters and sheets of glass in the same
+/// places, and reflectors for which walks that suit them all are not much worse than the walks of each alone.
+pub struct Cohort {
+    /// The first scene, with an emission wherever any of them has one.
+    first: Scene,
+    covers: Vec<Cover>,
+}
+
+impl Cohort {
+    /// A scene with none beside it.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        Self {
+            first: scene.clone(),
+            covers: covers(&[scene], scene.settings.model),
+        }
+    }
+
+    /// Takes another scene in, if the same walks serve it too.
+    pub fn admit(&mut self, other: &Scene) -> bool {
+        let first = &self.first;
+        let alike = Arc::ptr_eq(&first.surfaces, &other.surfaces)
+            && first.sensors == other.sensors
+            && first.settings == other.settings
+            && first.materials.len() == other.materials.len()
+            && first.sources.len() == other.sources.len();
+        let mut materials = first.materials.iter().zip(&other.materials);
+        let mut sources = first.sources.iter().zip(&other.sources);
+        if !alike
+            || !materials.all(|(a, b)| of_one_kind(a, b))
+            || !sources.all(|(a, b)| even(a) == even(b))
+        {
+            return false;
+        }
+        let reflectors = materials_of(other.settings.model, &other.materials);
+        let mut wider = Vec::new();
+        for (index, (cover, material)) in self.covers.iter().zip(&reflectors).enumerate() {
+            if !cover.holds(&material.optics) {
+                let cover = cover.with(material.optics);
+                if !cover.serves_all() {
+                    return false;
+                }
+                wider.push((index, cover));
+            }
+        }
+        for (index, cover) in wider {
+            self.covers[index] = cover;
+        }
+        for (all, own) in self.first.materials.iter_mut().zip(&other.materials) {
+            if all.emission.is_none() {
+                all.emission.clone_from(&own.emission);
+            }
+        }
+        true
+    }
 }
 
 /// Whether two materials differ in numbers alone.

@@ -1,0 +1,237 @@
+//! Light along a walk from a sensor in many variants at once.
+//!
+//! A strand is the light of those variants whose mirrors and panes on the way differ in strength alone: it has one chain of
+//! matrices, and each variant has a weight. Strands part where the walk passes a mirror that is of another kind in some of
+//! them, so many variants cost little more than one.
+
+use super::{Chain, emitted, passed_at};
+use crate::emitters::state_of;
+use crate::gather::Part;
+use crate::receiver::Receiver;
+use crate::spread::{Spread, Surface};
+use crate::trace::{Connection, Event, Path, Vertex};
+use malus_optics::{Sensor, Stokes};
+
+/// What a sensor reads of a walk in every variant.
+#[derive(Debug)]
+pub(crate) struct Strands<'r, const N: usize> {
+    receiver: &'r Receiver,
+    spread: &'r Spread,
+    strands: Vec<Strand<N>>,
+    reading: Vec<Reading<N>>,
+}
+
+/// What is read in one variant.
+#[derive(Debug, Clone, Copy)]
+struct Reading<const N: usize> {
+    sum: Stokes<N, Sensor>,
+    /// S0 of light seen in mirrors, and of emitters met by chance.
+    found: [f64; 2],
+}
+
+#[derive(Debug, Clone)]
+struct Strand<const N: usize> {
+    chain: Chain<N>,
+    members: Vec<Member>,
+}
+
+/// A variant, with its light relative to that of its strand.
+#[derive(Debug, Clone, Copy)]
+struct Member {
+    variant: usize,
+    weight: f64,
+}
+
+impl<'r, const N: usize> Strands<'r, N> {
+    /// Nothing read yet.
+    pub(crate) fn new(receiver: &'r Receiver, spread: &'r Spread) -> Self {
+        let nothing = Reading {
+            sum: Stokes::unpolarised(0.0),
+            found: [0.0; 2],
+        };
+        Self {
+            receiver,
+            spread,
+            strands: Vec::new(),
+            reading: vec![nothing; spread.count()],
+        }
+    }
+
+    /// What each variant has read: the light, and of S0 what was seen in mirrors and what was met by chance.
+    pub(crate) fn readings(&self) -> impl Iterator<Item = ([f64; N], [f64; 2])> {
+        self.reading
+            .iter()
+            .map(|it| (it.sum.components(), it.found))
+    }
+
+    /// Light met along a piece of a walk.
+    pub(crate) fn read(&mut self, path: &Path, part: Part) {
+        match part {
+            Part::Start => self.start(path),
+            Part::Onward => {
+                for vertex in &path.vertices {
+                    if self.strands.is_empty() || !self.pass(path, vertex) {
+                        self.strands.clear();
+                        return;
+                    }
+                }
+            }
+        }
+    }
+
+    fn start(&mut self, path: &Path) {
+        let member = |variant| Member {
+            variant,
+            weight: 1.0,
+        };
+        let all = Strand {
+            chain: Chain::ToSensor(None),
+            members: (0..self.spread.count()).map(member).collect(),
+        };
+        for connection in &path.connections {
+            self.connect(path, connection, all.chain, &all.members);
+        }
+        self.strands.clear();
+        self.strands.push(all);
+    }
+
+    /// Passes a vertex; false where the walk ends.
+    fn pass(&mut self, path: &Path, vertex: &Vertex) -> bool {
+        let surface = self.spread.surface(vertex.material);
+        if vertex.emission > 0.0 {
+            self.meet(vertex, surface);
+        }
+        if vertex.black {
+            return false;
+        }
+        let polarises = surface.kind(0).polarises_scattering();
+        let mirrored = matches!(vertex.event, Event::Mirror | Event::Through);
+        if surface.has_kinds() && (mirrored || polarises) {
+            self.part(surface);
+        }
+        let strands = std::mem::take(&mut self.strands);
+        for connection in &path.connections[vertex.connections.clone()] {
+            for strand in &strands {
+                let optics = surface.kind(strand.members[0].variant);
+                let chain = strand
+                    .chain
+                    .behind(self.receiver, optics, vertex, connection.toward);
+                let scattered = |member: &Member| Member {
+                    weight: member.weight
+                        * surface.scattering[member.variant]
+                        * self.receiver.per_exitance,
+                    ..*member
+                };
+                let members: Vec<Member> = strand.members.iter().map(scattered).collect();
+                self.connect(path, connection, chain, &members);
+            }
+        }
+        self.strands = strands;
+        let (receiver, spread) = (self.receiver, self.spread);
+        for strand in &mut self.strands {
+            let first = strand.members[0].variant;
+            match vertex.event {
+                Event::Absorbed => return false,
+                Event::Diffuse => {
+                    let chain =
+                        strand
+                            .chain
+                            .behind(receiver, surface.kind(first), vertex, vertex.onward);
+                    strand.chain = chain.scaled(1.0 / vertex.probability);
+                    for member in &mut strand.members {
+                        member.weight *= surface.scattering[member.variant];
+                    }
+                }
+                Event::Mirror | Event::Through => {
+                    let recorded = passed_at(vertex);
+                    let mut step = spread.step(&recorded, first);
+                    step.matrix = step.matrix * (1.0 / vertex.probability);
+                    strand.chain = strand.chain.extended(receiver, &step);
+                    for member in &mut strand.members {
+                        member.weight *= spread.strength(&recorded, member.variant);
+                    }
+                }
+            }
+            strand.members.retain(|member| member.weight > 0.0);
+        }
+        self.strands.retain(|strand| !strand.members.is_empty());
+        true
+    }
+
+    /// An emitter met by chance.
+    fn meet(&mut self, vertex: &Vertex, surface: &Surface) {
+        let Some(emission) = &surface.emission else {
+            return;
+        };
+        let direction = -vertex.arriving;
+        let light = emitted(direction, state_of(&emission.state, emission.axis));
+        for strand in &self.strands {
+            let read = strand.chain.pass(self.receiver, direction, light)
+                * (vertex.emission * self.receiver.per_exitance);
+            for member in &strand.members {
+                let read = read * (member.weight * surface.exitance[member.variant]);
+                let reading = &mut self.reading[member.variant];
+                reading.found[1] += read.i();
+                reading.sum += read;
+            }
+        }
+    }
+
+    /// Adds the light of a connection to its members, which goes on by the `chain`.
+    fn connect(
+        &mut self,
+        path: &Path,
+        connection: &Connection,
+        chain: Chain<N>,
+        members: &[Member],
+    ) {
+        let steps = &path.steps[connection.steps.clone()];
+        let light = emitted(connection.leaving, connection.state);
+        let share = self.spread.emitted(connection.origin);
+        let mut left: Vec<Member> = members.to_vec();
+        while let Some(&Member { variant: first, .. }) = left.first() {
+            let chain = steps.iter().fold(chain, |chain, step| {
+                chain.extended(self.receiver, &self.spread.step(step, first))
+            });
+            let read = chain.pass(self.receiver, connection.leaving, light) * connection.irradiance;
+            left.retain(|&Member { variant, weight }| {
+                if !steps
+                    .iter()
+                    .all(|step| self.spread.alike(step, first, variant))
+                {
+                    return true;
+                }
+                let mut weight = weight * share[variant];
+                for step in steps {
+                    weight *= self.spread.strength(step, variant);
+                }
+                let read = read * weight;
+                let reading = &mut self.reading[variant];
+                if connection.mirrored {
+                    reading.found[0] += read.i();
+                }
+                reading.sum += read;
+                false
+            });
+        }
+    }
+
+    /// Parts strands whose members have this surface of different kinds.
+    fn part(&mut self, surface: &Surface) {
+        let mut parted = Vec::with_capacity(self.strands.len());
+        for strand in self.strands.drain(..) {
+            let mut left = strand.members;
+            while let Some(&Member { variant: first, .. }) = left.first() {
+                let (alike, others) = left
+                    .into_iter()
+                    .partition(|it| surface.alike(first, it.variant));
+                parted.push(Strand {
+                    chain: strand.chain,
+                    members: alike,
+                });
+                left = others;
+            }
+        }
+        self.strands = parted;
+    }
+}
