@@ -38,7 +38,7 @@ def glossy_room(walks=1 << 18):
     return FLOOR, values
 
 
-def blender_office(walks=1 << 13):
+def blender_office(walks=1 << 11):
     import rooms
     import surfaces
     from stage import Stage

@@ -34,6 +34,8 @@ class Mitsuba:
         self.cold = {}
 
     def settings(self):
+        # Where nothing scatters there is nothing to share with.
+        shares = (0.0,) if self.room.share == 1 else (0.0, 0.5)
         return [
             Setting(
                 f"{start} start, {sampler}, rr_depth {roulette}, mirror share {mirror_share or 'by reflectance'}",
@@ -48,7 +50,7 @@ class Mitsuba:
             for start in ("lamps", "cosine")
             for sampler in ("independent", "multijitter")
             for roulette in (2, 5)
-            for mirror_share in (0.0, 0.5)
+            for mirror_share in shares
         ]
 
     def describe(self, setting):

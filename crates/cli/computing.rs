@@ -5,6 +5,9 @@ use anyhow::anyhow;
 use clap::Args;
 use malus_scene::{Error, Override};
 
+/// More threads than any machine has cores: beyond, starting them is all that a run would do.
+const MOST_THREADS: usize = 1024;
+
 /// How a scene is to be computed.
 #[derive(Args, Debug)]
 pub struct Computing {
@@ -143,6 +146,32 @@ impl Computing {
         }
         Failure::input(anyhow!(text))
     }
+
+    /// Number of threads asked for, or as many as there are cores.
+    ///
+    /// # Errors
+    /// No such number.
+    pub fn threads(&self) -> Result<usize, Failure> {
+        threads(self.threads.as_deref())
+    }
+}
+
+/// Number of threads asked for, or as many as there are cores.
+///
+/// # Errors
+/// No such number.
+pub fn threads(asked: Option<&str>) -> Result<usize, Failure> {
+    let Some(text) = asked else {
+        return Ok(std::thread::available_parallelism().map_or(1, usize::from));
+    };
+    text.parse()
+        .ok()
+        .filter(|count| (1..=MOST_THREADS).contains(count))
+        .ok_or_else(|| {
+            Failure::input(anyhow!(
+                "--threads {text}: must be a whole number from 1 to {MOST_THREADS}, found {text:?}"
+            ))
+        })
 }
 
 /// A word as a POSIX shell takes it.

@@ -233,7 +233,6 @@ fn parsed(bytes: &[u8]) -> Result<Part> {
             _ => bail!(DAMAGED),
         }
     }
-    "is damaged: its checksum is not that of its content; remove it, and compute it again";
     let split = bytes.len().checked_sub(CHECKSUM).context(DAMAGED)?;
     let (content, checksum) = bytes.split_at(split);
     let mut sum = SipHasher13::new();

@@ -13,7 +13,7 @@ use crate::slurm::Array;
 use crate::submit::Reach;
 use crate::summary::Circumstances;
 use crate::{merge, picture, shards, stop, submit};
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use malus_estimator::Shard;
 use malus_scene::{Scene, Settings};
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -33,7 +33,7 @@ pub enum End {
 /// # Errors
 /// Bad arguments, a bad scene, or a run that failed.
 pub fn run(command: &args::Run) -> Result<End, Failure> {
-    let threads = threads(command.computing.threads.as_deref())?;
+    let threads = command.computing.threads()?;
     let interval = command.portion.interval().map_err(Failure::input)?;
     let scene = load(command)?;
     let settings = settings(command, &scene);
@@ -253,27 +253,6 @@ pub fn settings(command: &args::Run, scene: &Scene) -> Settings {
     let mut settings = scene.settings.clone();
     stop::narrow(&mut settings, &command.computing.overrides());
     settings
-}
-
-/// More threads than any machine has cores: beyond, starting them is all that a run would do.
-const MOST_THREADS: usize = 1024;
-
-/// Number of threads asked for, or as many as there are cores.
-///
-/// # Errors
-/// What was asked for is no number of threads.
-pub fn threads(asked: Option<&str>) -> Result<usize, Failure> {
-    let Some(text) = asked else {
-        return Ok(std::thread::available_parallelism().map_or(1, usize::from));
-    };
-    text.parse()
-        .ok()
-        .filter(|count| (1..=MOST_THREADS).contains(count))
-        .ok_or_else(|| {
-            Failure::input(anyhow!(
-                "--threads {text}: must be a whole number from 1 to {MOST_THREADS}, found {text:?}"
-            ))
-        })
 }
 
 /// So many threads, ready to compute.

@@ -54,7 +54,9 @@ impl Column {
 
     fn varies(&self) -> bool {
         match self {
-            Self::Numbers(numbers) => numbers.iter().any(|it| *it != numbers[0]),
+            Self::Numbers(numbers) => numbers
+                .iter()
+                .any(|it| it.to_bits() != numbers[0].to_bits()),
             Self::Words(words) => words.iter().any(|it| *it != words[0]),
         }
     }

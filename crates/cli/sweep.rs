@@ -10,7 +10,7 @@ use crate::outcome::{Measured, Outcome};
 use crate::output::Directory;
 use crate::progress::Reporter;
 use crate::report::{print, warn};
-use crate::run::{End, directory, pool, threads};
+use crate::run::{End, directory, pool};
 use crate::student::half_width_95;
 use crate::variants::Variants;
 use crate::{rows, stop, trade};
@@ -28,7 +28,7 @@ const BASE: &str = "base";
 /// # Errors
 /// Bad arguments, a bad scene or study, or variants that failed.
 pub fn sweep(command: &args::Sweep) -> Result<End, Failure> {
-    let threads = threads(command.computing.threads.as_deref())?;
+    let threads = command.computing.threads()?;
     let study = Study::load(&command.study).map_err(|error| command.computing.refused(&error))?;
     let overrides = command.computing.overrides();
     let base = study.base(&overrides);

@@ -184,9 +184,10 @@ fn uniformity(finding: &Finding, reach: f64) -> Option<(Chart, String)> {
         sides: SIDES,
     };
     let beaten = |at: [f64; 2]| {
-        points
-            .iter()
-            .any(|(_, other, _)| other[0] >= at[0] && other[1] >= at[1] && *other != at)
+        points.iter().any(|(_, other, _)| {
+            let (more, least) = (other[0] - at[0], other[1] - at[1]);
+            more >= 0.0 && least >= 0.0 && more + least > 0.0
+        })
     };
     let mut front: Vec<[f64; 2]> = points
         .iter()

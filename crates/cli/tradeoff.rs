@@ -9,12 +9,13 @@ mod setting;
 mod trial;
 
 use crate::args;
+use crate::computing::threads;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::output::Directory;
 use crate::progress::Reporter;
 use crate::report::{print, warn};
-use crate::run::{End, directory, threads};
+use crate::run::{End, directory};
 use anyhow::anyhow;
 use malus_scene::Scene;
 use series::{Budget, Series};

@@ -90,7 +90,7 @@ fn main() {
     );
     figure::print();
     coverage::print();
-    studies::print();
     stopping::print();
+    studies::print();
     baseline::print();
 }

@@ -27,7 +27,7 @@ const TRIED: u32 = PARTS / 8;
 /// least.
 const ROUNDS: u32 = 16;
 const LAUNCHED: u64 = 8;
-const GATHERED: u64 = 32;
+const GATHERED: u64 = 16;
 
 /// By how much less walks from the emitters err in a run, whose points are many and spread evenly. Far from walls their
 /// light is smooth; it is not where walks from the sensors are needed.

@@ -25,7 +25,7 @@ const BRANCH: u64 = u64::MAX;
 const SHARE: u64 = 64;
 
 /// Least and most walks a replica.
-const WALKS: [u64; 2] = [16, 4096];
+const WALKS: [u64; 2] = [4, 4096];
 
 /// Which sum holds what; those of the materials follow.
 const ESCAPED: usize = 0;

@@ -353,7 +353,7 @@ impl Joining<'_> {
             .mirrors
             .draw(&viewer, &target, self.uniforms, depth, |drawn, inverse| {
                 let mut steps = Vec::new();
-                if let Some((way, _)) = medium.drawn(&viewer, &target, &drawn, &mut steps) {
+                if let Some((way, _)) = medium.drawn(&viewer, &target, drawn, &mut steps) {
                     let cosines = way.start.dot(vertex.normal) * -way.arriving.dot(receiver.normal);
                     let joined = Joined {
                         direction: way.start,

@@ -317,24 +317,21 @@ impl<'a> Medium<'a> {
         Some((way, chain))
     }
 
-    /// The way from a viewer to a target as it was drawn, and the probability of its mirrors; `None` where there is none.
+    /// The way from a viewer to a target as it was drawn, and its mirrors; `None` where there is none.
     pub(crate) fn drawn(
         &self,
         viewer: &Viewer,
         target: &Target,
-        drawn: &Drawn,
+        drawn: Drawn,
         steps: &mut Vec<Step>,
-    ) -> Option<(Way, f64)> {
+    ) -> Option<(Way, Vec<u32>)> {
         match drawn {
             Drawn::Chain(chain) => {
-                let way = self.chained(viewer, target, chain, steps)?;
-                Some((way, self.mirrors.probability(viewer, target, chain)))
+                let way = self.chained(viewer, target, &chain, steps)?;
+                Some((way, chain))
             }
             Drawn::Image(image, mirrors, choices) => {
-                let choices = choices.clone();
-                let (way, chain) =
-                    self.imaged(viewer, target, (*image, *mirrors), choices, steps)?;
-                Some((way, self.mirrors.probability(viewer, target, &chain)))
+                self.imaged(viewer, target, (image, mirrors), choices, steps)
             }
         }
     }

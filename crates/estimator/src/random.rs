@@ -3,8 +3,8 @@
 //! Nothing here has a state that a walk could leave behind, so walks that part company meet again at
 //! the next vertex, and no number depends on the thread that asked for it.
 //!
-//! The first vertices of the walks of one replica are spread evenly: Owen-scrambled Sobol' points (Burley 2020), four
-//! dimensions at a time, scrambled anew for each replica, so that the spread between replicas is an honest error.
+//! The first vertices of the walks of one replica are spread evenly: Owen-scrambled Sobol' points (Burley 2020) of all these
+//! dimensions together, scrambled anew for each replica, so that the spread between replicas is an honest error.
 //! Each point by itself is uniform, so any number of them is without bias. What comes later is independent.
 
 use rand::{Rng, SeedableRng};
@@ -27,11 +27,27 @@ pub(crate) enum Purpose {
     Glint = 5,
 }
 
+impl Purpose {
+    /// Which four dimensions of the Sobol' points serve it at a vertex whose numbers are spread evenly: the lowest, which are
+    /// spread best, decide where walks go.
+    fn dimensions(self, depth: u32) -> u32 {
+        match self {
+            // A walk is launched from an emitter or from a sensor.
+            Self::Launch => 0,
+            Self::Scatter => depth,
+            Self::Emit => SPREAD,
+            Self::Connect => SPREAD + 1 + depth,
+            Self::Reflect => 2 * SPREAD + 1 + depth,
+            Self::Glint => 3 * SPREAD + 1 + depth,
+        }
+    }
+}
+
 const PURPOSES: u64 = 8;
 const BLOCK: u64 = 4;
 
 /// Vertices of a walk, its start included, whose numbers are spread evenly.
-const SPREAD: u32 = 4;
+const SPREAD: u32 = 8;
 
 /// Length of a Sobol' sequence before it is scrambled anew, as a power of two.
 const SEQUENCE: u32 = 16;
@@ -145,10 +161,10 @@ impl Uniforms {
         if depth >= SPREAD {
             return std::array::from_fn(|i| (bits(i) >> 11) as f64 * (0.5 / (1u64 << 52) as f64));
         }
-        let sequence = (self.index >> SEQUENCE) << 32 | block;
-        let seed = mixed(self.stream ^ mixed(sequence.wrapping_mul(GOLDEN))) as u32;
+        let sequence = self.index >> SEQUENCE;
+        let seed = mixed(self.stream ^ mixed(sequence.wrapping_mul(GOLDEN) ^ GOLDEN)) as u32;
         let index = (self.index & ((1 << SEQUENCE) - 1)) as u32;
-        let point = sobol_burley::sample_4d(index, 0, seed);
+        let point = sobol_burley::sample_4d(index, purpose.dimensions(depth), seed);
         // Single precision gives 23 bits; independent ones fill the other 30, two numbers' worth from each hash.
         let (low, high) = (bits(0), bits(1));
         let rest = [low >> 34, low & 0x3FFF_FFFF, high >> 34, high & 0x3FFF_FFFF];
@@ -243,22 +259,26 @@ mod tests {
 
     #[test]
     fn first_vertices_are_spread_evenly_and_others_are_not() {
-        // 2⁸ points of a (0, 8, 2)-net in base 2: each of 16 × 16 cells, and each of 256 columns, holds one.
         let stream = Stream::new(3, 1).branch(2);
-        let cells = |depth: u32| {
-            let mut cells: Vec<usize> = (0..256)
-                .map(|index| {
-                    let [_, u, v, _] = stream.walk(index).at(depth, Purpose::Connect);
-                    (u * 16.0) as usize * 16 + (v * 16.0) as usize
-                })
-                .collect();
+        let filled = |depth: u32, purpose: Purpose, cell: &dyn Fn([f64; 4]) -> f64| {
+            let numbers = (0..256).map(|index| stream.walk(index).at(depth, purpose));
+            let mut cells: Vec<u32> = numbers.map(|n| cell(n) as u32).collect();
             cells.sort_unstable();
             cells.dedup();
             cells.len()
         };
-        assert!((0..SPREAD).all(|depth| cells(depth) == 256));
-        // Of 256 independent points 256 (1 − 1/e) = 162 cells are hit, ± 8.
-        assert!(cells(SPREAD) < 200);
+        // 2⁸ points of a (0, 8, 2)-net in base 2: each of 16 × 16 cells holds one.
+        let square = |[_, u, v, _]: [f64; 4]| (u * 16.0).floor() * 16.0 + (v * 16.0).floor();
+        assert_eq!(filled(0, Purpose::Launch, &square), 256);
+        // In every single dimension each of 256 columns does.
+        for dimension in 0..4 {
+            let column = |numbers: [f64; 4]| numbers[dimension] * 256.0;
+            for depth in 0..SPREAD {
+                assert_eq!(filled(depth, Purpose::Connect, &column), 256);
+            }
+            // Of 256 independent points 256 (1 − 1/e) = 162 columns are hit, ± 8.
+            assert!(filled(SPREAD, Purpose::Connect, &column) < 200);
+        }
     }
 
     #[test]

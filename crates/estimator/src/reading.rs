@@ -7,20 +7,25 @@ use crate::results::{Group, Paired, Reading, Replicates, Shares};
 use crate::statistics::{Estimate, Means, Replica, Tally, degree_of_linear_polarisation};
 use malus_scene::Scene;
 
+/// Components, padded to four.
+pub(crate) fn padded<const N: usize>(stokes: &[f64; N]) -> [f64; 4] {
+    std::array::from_fn(|component| stokes.get(component).copied().unwrap_or(0.0))
+}
+
 /// How the sums of a run are read.
 pub(crate) struct Readings<'a> {
-    scene: &'a Scene,
-    channels: Channels,
-    receivers: &'a [Receiver],
-    allocation: &'a Allocation,
+    pub scene: &'a Scene,
+    pub channels: Channels,
+    pub receivers: &'a [Receiver],
+    pub allocation: &'a Allocation,
     /// What is known without chance, one Stokes vector a sensor; S0 is the same in every model.
-    exact: Vec<[f64; 4]>,
+    pub exact: Vec<[f64; 4]>,
     /// One entry a sensor.
-    unmet: Vec<Unmet>,
+    pub unmet: Vec<Unmet>,
     /// Whether sensors tell each other what they have met.
-    shared: bool,
+    pub shared: bool,
     /// Which of so many variants is read.
-    variant: (usize, usize),
+    pub variant: (usize, usize),
 }
 
 /// Light that a walk from a sensor meets by chance alone, off a mirror, and may not have met yet.
@@ -60,33 +65,6 @@ fn widened(standard_error: f64, variance: f64) -> f64 {
 }
 
 impl<'a> Readings<'a> {
-    /// Readings of the scene's sensors, of which the `exact` part is known.
-    #[must_use]
-    pub(crate) fn new<const N: usize>(
-        scene: &'a Scene,
-        channels: Channels,
-        receivers: &'a [Receiver],
-        allocation: &'a Allocation,
-        exact: &[[f64; N]],
-        unmet: Vec<Unmet>,
-        shared: bool,
-        variant: (usize, usize),
-    ) -> Self {
-        let padded = |stokes: &[f64; N]| {
-            std::array::from_fn(|component| stokes.get(component).copied().unwrap_or(0.0))
-        };
-        Self {
-            scene,
-            channels,
-            receivers,
-            allocation,
-            exact: exact.iter().map(padded).collect(),
-            unmet,
-            shared,
-            variant,
-        }
-    }
-
     /// What walks from a sensor and walks from the emitters bring it, on average.
     fn parts(&self, means: &Means, sensor: usize, channel: usize) -> [f64; 2] {
         let (variant, variants) = self.variant;

@@ -10,7 +10,7 @@ use crate::gather::Aims;
 use crate::ledger::Ledger;
 use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
-use crate::reading::{Readings, Unmet};
+use crate::reading::{Readings, Unmet, padded};
 use crate::receiver::Receiver;
 use crate::results::{Answer, Group, Progress, Results, Stop};
 use crate::sight::Sight;
@@ -22,7 +22,7 @@ use malus_optics::Representation;
 use malus_scene::{Estimator, Model, Scene, Settings};
 
 /// Walks a replica before the first checkpoint: fewer would not tell an error from luck.
-const FIRST_CHECKPOINT: u64 = 16;
+const FIRST_CHECKPOINT: u64 = 8;
 
 /// The first checkpoint after `taken` walks a replica: four to the octave.
 fn next_checkpoint(taken: u64) -> u64 {
@@ -205,17 +205,15 @@ fn run_with<const N: usize>(
         None if techniques.gather => unmet(&passes, &emitters, &aims),
         None => vec![Unmet::default(); receivers.len()],
     };
-    let readings = |variant: usize| {
-        Readings::new(
-            scene,
-            channels,
-            &receivers,
-            &allocation,
-            &exact[variant],
-            unmet.clone(),
-            techniques.mirrored,
-            (variant, scenes.len()),
-        )
+    let readings = |variant: usize| Readings {
+        scene,
+        channels,
+        receivers: &receivers,
+        allocation: &allocation,
+        exact: exact[variant].iter().map(padded).collect(),
+        unmet: unmet.clone(),
+        shared: techniques.mirrored,
+        variant: (variant, scenes.len()),
     };
     let first = readings(0);
 
@@ -360,6 +358,6 @@ mod tests {
                 taken
             })
             .collect();
-        assert_eq!(checkpoints, [16, 20, 24, 28, 32, 40, 48, 56, 64, 80]);
+        assert_eq!(checkpoints, [8, 10, 12, 14, 16, 20, 24, 28, 32, 40]);
     }
 }

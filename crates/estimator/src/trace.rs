@@ -512,10 +512,15 @@ impl<'a> Walk<'a> {
             self.depth,
             |drawn, inverse| {
                 let first = path.steps.len();
-                let found = self.medium.drawn(&viewer, &target, &drawn, &mut path.steps);
-                let Some((way, probability)) = found else {
+                let found = self.medium.drawn(&viewer, &target, drawn, &mut path.steps);
+                let Some((way, chain)) = found else {
                     path.steps.truncate(first);
                     return;
+                };
+                // Before a single mirror no ray was drawn that the light may differ from.
+                let probability = match chain[..] {
+                    [_] => 1.0 / inverse,
+                    _ => mirrors.probability(&viewer, &target, &chain),
                 };
                 let (toward, leaving) = (way.start, -way.arriving);
                 path.connections.push(Connection {

@@ -180,7 +180,9 @@ impl Cohort {
 /// Whether two materials differ in numbers alone.
 fn of_one_kind(one: &Material, other: &Material) -> bool {
     let states = match (&one.emission, &other.emission) {
-        (Some(one), Some(other)) => one.state == other.state && one.axis == other.axis,
+        (Some(one), Some(other)) => {
+            one.state.map(f64::to_bits) == other.state.map(f64::to_bits) && one.axis == other.axis
+        }
         _ => true,
     };
     states
