@@ -520,6 +520,110 @@ fn light_in_equilibrium_is_the_same_everywhere() {
     }
 }
 
+/// Helmholtz: of two equal black patches each sends the other as much, by way of all there is: metal walls, a coated floor,
+/// a pane, a ball of mirrors that none looks into.
+#[test]
+fn two_patches_send_each_other_the_same() {
+    let patches = [
+        (
+            "[0.2, 0.3, 1]",
+            "[0, 0.12, 0]",
+            "[0.12, 0, 0]",
+            "[0, 0, -1]",
+        ),
+        (
+            "[1, 0.55, 0.35]",
+            "[0, 0, 0.12]",
+            "[0, 0.12, 0]",
+            "[-1, 0, 0]",
+        ),
+    ];
+    let received = |from: usize| {
+        let shapes: String = patches
+            .iter()
+            .enumerate()
+            .map(|(index, (origin, u, v, _))| {
+                let exitance = if index == from { 1 } else { 0 };
+                format!(
+                    "[[shape]]
+                    kind = 'rectangle'
+                    origin = {origin}
+                    u = {u}
+                    v = {v}
+                    material = 'patch{index}'
+                    [material.patch{index}]
+                    rho = 0
+                    exitance = {exitance}\n"
+                )
+            })
+            .collect();
+        let (origin, u, v, normal) = &patches[1 - from];
+        let results = evaluate(&scene(&format!(
+            "[[shape]]
+            kind = 'box'
+            min = [0, 0, 0]
+            max = [1, 1, 1]
+            inward = true
+            material = 'wall'
+            [material.wall]
+            rho = 0.5
+            a = 0.6
+            n = 0.183
+            k = 3.43
+            [[shape]]
+            kind = 'rectangle'
+            origin = [0, 0, 0]
+            u = [1, 0, 0]
+            v = [0, 1, 0]
+            material = 'floor'
+            [material.floor]
+            kind = 'coated'
+            rho = 0.7
+            n = 1.5
+            [[shape]]
+            kind = 'rectangle'
+            origin = [0.6, 0.1, 0.1]
+            u = [0.1, 0.8, 0]
+            v = [-0.1, 0, 0.7]
+            material = 'pane'
+            [material.pane]
+            kind = 'pane'
+            n = 1.7
+            tau = 0.8
+            [[shape]]
+            kind = 'sphere'
+            centre = [0.35, 0.7, 0.3]
+            radius = 0.15
+            subdivisions = 2
+            material = 'ball'
+            [material.ball]
+            rho = 0.2
+            a = 0.9
+            n = 3
+            {shapes}
+            [[sensor]]
+            name = 'patch'
+            grid = {{ origin = {origin}, u = {u}, v = {v}, counts = [3, 3] }}
+            normal = {normal}
+            [run]
+            compare = ['scalar']
+            samples = 2048"
+        )));
+        let group = &results.groups[0];
+        (group.mean, group.mean_standard_error, group.scalar.unwrap())
+    };
+    let (one, other) = (received(0), received(1));
+    let z = (one.0 - other.0) / one.1.hypot(other.1);
+    assert!(z.abs() < 4.5, "{one:?} {other:?}: z = {z:.2}");
+    assert!(
+        one.1 < 2e-2 * one.0 && other.1 < 2e-2 * other.0,
+        "{one:?} {other:?}"
+    );
+    let errors = [one.2, other.2].map(|it| it.difference_standard_error);
+    let z = (one.2.difference - other.2.difference) / errors[0].hypot(errors[1]);
+    assert!(z.abs() < 4.5, "{one:?} {other:?}: z = {z:.2}");
+}
+
 /// A source without size is what a tiny ball of the same intensity is.
 #[test]
 fn a_point_source_is_a_tiny_ball() {

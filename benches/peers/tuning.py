@@ -56,15 +56,19 @@ def _try(entrant, setting, reference, seeds, limit=None):
         for seed in range(FIRST_SEED, FIRST_SEED + seeds):
             solutions.append(entrant.solve(setting, seed, limit=limit))
     except TooSlow:
+        _log(f"{entrant.name}: {entrant.describe(setting)}: given up after {limit:.3g} s")
         return None
     trial = Trial(setting, outcome(solutions, reference))
-    print(
-        f"  {entrant.name}: {entrant.describe(setting)}: RMS {100 * trial.outcome.rms:.3g} %, "
-        f"{trial.outcome.seconds:.3g} s, {trial.outcome.cpu:.3g} CPU s",
-        file=sys.stderr,
-        flush=True,
+    found = trial.outcome
+    _log(
+        f"{entrant.name}: {entrant.describe(setting)}: RMS {100 * found.rms:.3g} %, "
+        f"{found.seconds:.3g} s, {found.cpu:.3g} CPU s"
     )
     return trial
+
+
+def _log(line):
+    print(f"  {line}", file=sys.stderr, flush=True)
 
 
 def _shortfall(trial, target):

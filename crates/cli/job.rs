@@ -1,13 +1,13 @@
 //! The computing itself: the clock, the user and the checkpoints beside the estimator.
 
 use crate::interrupt::Interrupt;
-use crate::keeper::{Interval, Keeper};
+use crate::keeper::Keeper;
 use crate::output::Directory;
 use crate::part::{self, Part};
 use crate::progress::Reporter;
 use crate::stop;
 use anyhow::{Context, Result};
-use malus_estimator::{Answer, Film, Results, StateError};
+use malus_estimator::{Answer, Film, Progress, Results, State};
 use malus_scene::{Scene, Settings};
 use std::time::Instant;
 
@@ -19,11 +19,9 @@ pub struct Job<'a> {
     pub settings: &'a Settings,
     /// Whether the user asks for an end.
     pub interrupt: &'a Interrupt,
-    /// Where the run is set aside, how often, and in which file.
+    /// Where the run is set aside.
     pub directory: &'a Directory,
-    /// See `directory`.
-    pub interval: Interval,
-    /// See `directory`.
+    /// In which file.
     pub name: &'a str,
     /// Whether no progress is shown.
     pub quiet: bool,
@@ -34,18 +32,16 @@ impl Job<'_> {
     ///
     /// # Errors
     /// The part does not fit the scene, or a checkpoint cannot be written.
-    pub fn compute(&self, part: &mut Part) -> Result<Results> {
+    pub fn compute(&self, part: &mut Part, keeper: &mut Keeper) -> Result<Results> {
         let Part { head, state, films } = part;
         let (started, before) = (Instant::now(), head.seconds);
         let mut reporter = Reporter::new(self.quiet, self.settings.seconds);
-        let mut keeper = Keeper::new(self.directory, self.interval);
-        let mut watch = |progress: &_, state: &_| {
-            let progress: &malus_estimator::Progress = progress;
+        let mut watch = |progress: &Progress, state: &State| {
             head.samples = progress.samples;
             head.seconds = before + started.elapsed().as_secs_f64();
             reporter.show(progress, head.seconds);
-            let kept = keeper
-                .keep(|directory| part::write(directory, self.name, head, state, films.iter()));
+            let kept =
+                keeper.keep(|| part::write(self.directory, self.name, head, state, films.iter()));
             if !kept || self.interrupt.asked() {
                 Answer::Interrupt
             } else {
@@ -56,21 +52,20 @@ impl Job<'_> {
         head.seconds = before + started.elapsed().as_secs_f64();
         reporter.finish();
         keeper.check()?;
-        results.map_err(|error: StateError| anyhow::anyhow!("{}: {error}", self.name))
+        results.with_context(|| format!("{}", self.directory.path().join(self.name).display()))
     }
 
     /// Takes what is missing of the picture of a camera, by its index, unless the user asks for an end.
     ///
     /// # Errors
     /// A checkpoint cannot be written.
-    pub fn shoot(&self, part: &mut Part, index: usize) -> Result<()> {
+    pub fn shoot(&self, part: &mut Part, keeper: &mut Keeper, index: usize) -> Result<()> {
         let camera = &self.scene.cameras[index];
         let Part { head, state, films } = part;
         films.resize(self.scene.cameras.len(), Film::default());
         let mut film = std::mem::take(&mut films[index]);
         let started = Instant::now();
         let mut reporter = Reporter::new(self.quiet, None);
-        let mut keeper = Keeper::new(self.directory, self.interval);
         malus_estimator::expose(
             self.scene,
             camera,
@@ -80,11 +75,11 @@ impl Job<'_> {
             &mut |share, film| {
                 reporter.show_share(&camera.name, share, started.elapsed().as_secs_f64());
                 head.shot = index as f64 + share;
-                let kept = keeper.keep(|directory| {
+                let kept = keeper.keep(|| {
                     let others = films.iter().enumerate();
                     let films =
                         others.map(|(other, kept)| if other == index { film } else { kept });
-                    part::write(directory, self.name, head, state, films)
+                    part::write(self.directory, self.name, head, state, films)
                 });
                 if !kept || self.interrupt.asked() {
                     Answer::Interrupt

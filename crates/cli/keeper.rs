@@ -1,6 +1,5 @@
 //! Sets a run aside from time to time, so that what ends the program takes little with it.
 
-use crate::output::Directory;
 use anyhow::{Error, Result};
 use std::time::{Duration, Instant};
 
@@ -32,18 +31,16 @@ pub fn interval(text: Option<&str>) -> Result<Interval> {
 }
 
 /// Keeps time between checkpoints.
-pub struct Keeper<'d> {
-    directory: &'d Directory,
+pub struct Keeper {
     interval: Interval,
     last: Instant,
     failure: Option<Error>,
 }
 
-impl<'d> Keeper<'d> {
+impl Keeper {
     /// One that begins to count now.
-    pub fn new(directory: &'d Directory, interval: Interval) -> Self {
+    pub fn new(interval: Interval) -> Self {
         Self {
-            directory,
             interval,
             last: Instant::now(),
             failure: None,
@@ -51,15 +48,20 @@ impl<'d> Keeper<'d> {
     }
 
     /// Lets `write` set the run aside if it is time; whether the run is to go on: not when that failed.
-    pub fn keep(&mut self, write: impl FnOnce(&Directory) -> Result<()>) -> bool {
+    pub fn keep(&mut self, write: impl FnOnce() -> Result<()>) -> bool {
         let due = self
             .interval
             .is_some_and(|interval| self.last.elapsed() >= interval);
         if due && self.failure.is_none() {
-            self.failure = write(self.directory).err();
+            self.failure = write().err();
             self.last = Instant::now();
         }
         self.failure.is_none()
+    }
+
+    /// Whether the run is ever set aside.
+    pub fn keeps(&self) -> bool {
+        self.interval.is_some()
     }
 
     /// Makes sure that the last checkpoint did not fail.
@@ -96,23 +98,21 @@ mod tests {
 
     #[test]
     fn a_run_is_set_aside_when_it_is_time_and_ends_when_that_fails() {
-        let temporary = tempfile::tempdir().expect("a directory");
-        let directory = Directory::prepare(temporary.path()).expect("writable");
         let never = || -> Result<()> { unreachable!("not yet") };
-        assert!(Keeper::new(&directory, None).keep(|_| never()));
-        assert!(Keeper::new(&directory, Some(Duration::from_secs(3600))).keep(|_| never()));
-        let mut keeper = Keeper::new(&directory, Some(Duration::ZERO));
+        assert!(Keeper::new(None).keep(never));
+        assert!(Keeper::new(Some(Duration::from_secs(3600))).keep(never));
+        let mut keeper = Keeper::new(Some(Duration::ZERO));
         let mut written = 0;
         for _ in 0..3 {
-            assert!(keeper.keep(|_| {
+            assert!(keeper.keep(|| {
                 written += 1;
                 Ok(())
             }));
         }
         assert_eq!(written, 3);
         assert!(keeper.check().is_ok());
-        assert!(!keeper.keep(|_| anyhow::bail!("no space")));
-        assert!(!keeper.keep(|_| never()));
+        assert!(!keeper.keep(|| anyhow::bail!("no space")));
+        assert!(!keeper.keep(never));
         let error = keeper.check().expect_err("no space");
         assert!(format!("{error:#}").ends_with("--resume goes on with it: no space"));
     }

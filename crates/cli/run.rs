@@ -5,6 +5,7 @@ use crate::computing::quoted;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::job::Job;
+use crate::keeper::Keeper;
 use crate::output::Directory;
 use crate::part::{CHECKPOINT, Head, Part};
 use crate::portion::{rounded_up, samples_alone};
@@ -59,20 +60,25 @@ pub fn run(command: &args::Run) -> Result<End, Failure> {
         settings: &settings,
         interrupt: &Interrupt::listen().map_err(Failure::run)?,
         directory: &directory,
-        interval,
         name: &name,
         quiet: command.quiet,
     };
+    let mut keeper = Keeper::new(interval);
     let end = pool.install(|| match shard {
-        Some(shard) => compute_shard(&job, &mut part, shard),
-        None => compute_whole(command, &job, &mut part),
+        Some(shard) => compute_shard(&job, &mut part, &mut keeper, shard),
+        None => compute_whole(command, &job, &mut part, &mut keeper),
     });
     end.map_err(Failure::run)
 }
 
 /// Computes a whole run and reports it.
-fn compute_whole(command: &args::Run, job: &Job, part: &mut Part) -> anyhow::Result<End> {
-    let results = job.compute(part)?;
+fn compute_whole(
+    command: &args::Run,
+    job: &Job,
+    part: &mut Part,
+    keeper: &mut Keeper,
+) -> anyhow::Result<End> {
+    let results = job.compute(part, keeper)?;
     warn(&results.warnings);
     let mut complete = results.complete;
     for index in pictured(part, job.scene) {
@@ -80,7 +86,7 @@ fn compute_whole(command: &args::Run, job: &Job, part: &mut Part) -> anyhow::Res
             complete = false;
             break;
         }
-        job.shoot(part, index)?;
+        job.shoot(part, keeper, index)?;
         let camera = &job.scene.cameras[index];
         let taken = part.films[index].developed(camera);
         complete &= taken.complete;
@@ -107,7 +113,7 @@ fn compute_whole(command: &args::Run, job: &Job, part: &mut Part) -> anyhow::Res
         "interrupted: the results in {} are incomplete",
         job.directory.path().display()
     );
-    if job.interval.is_some() {
+    if keeper.keeps() {
         job.set_aside(part)?;
         told += "; --resume goes on with them";
     }
@@ -116,7 +122,12 @@ fn compute_whole(command: &args::Run, job: &Job, part: &mut Part) -> anyhow::Res
 }
 
 /// Computes a shard and leaves it to be merged.
-fn compute_shard(job: &Job, part: &mut Part, shard: Shard) -> anyhow::Result<End> {
+fn compute_shard(
+    job: &Job,
+    part: &mut Part,
+    keeper: &mut Keeper,
+    shard: Shard,
+) -> anyhow::Result<End> {
     let path = job.directory.path().join(job.name);
     let tell = |what: &str| {
         let text = format!("shard {shard} {what}: {}\n", path.display());
@@ -126,10 +137,10 @@ fn compute_shard(job: &Job, part: &mut Part, shard: Shard) -> anyhow::Result<End
         tell("is there already")?;
         return Ok(End::Complete);
     }
-    job.compute(part)?;
+    job.compute(part, keeper)?;
     for index in pictured(part, job.scene) {
         if !job.interrupt.asked() {
-            job.shoot(part, index)?;
+            job.shoot(part, keeper, index)?;
         }
     }
     part.head.complete = !job.interrupt.asked();

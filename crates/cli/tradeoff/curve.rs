@@ -21,6 +21,8 @@ pub struct Curve {
     pub outcomes: Vec<Outcome>,
     /// The smallest error that the reference can tell: what is below is known to be below, and no more.
     pub limit: f64,
+    /// Whether more samples bring it to the right answer.
+    pub is_unbiased: bool,
 }
 
 /// Where a curve comes down to an error.
@@ -40,6 +42,13 @@ impl Curve {
         self.outcomes
             .iter()
             .filter(|outcome| outcome.rms_error >= self.limit)
+    }
+
+    /// The first outcome that is finer than the reference can tell.
+    pub fn untold(&self) -> Option<&Outcome> {
+        self.outcomes
+            .iter()
+            .find(|outcome| outcome.rms_error < self.limit)
     }
 
     /// Power of the time that the error goes with at the end of the curve, −½ where it is chance alone; from two points on.
@@ -98,11 +107,13 @@ impl Curve {
     }
 
     /// The same beyond the last point that the reference can tell, or beyond the first outcome where it can tell none.
+    ///
+    /// Of a setting that leaves something out nothing is foretold: nobody knows where it ends.
     fn foretold(&self, error: f64) -> Option<Reach> {
         let last = self.points().next_back().or(self.outcomes.first())?;
         let factor = (last.rms_error / error) * (last.rms_error / error);
-        let ends_above = self.floor().is_some_and(|floor| floor > 0.5 * error);
-        (!ends_above && factor <= BEYOND).then(|| Reach {
+        let goes_on = self.is_unbiased && self.floor().is_none();
+        (goes_on && factor <= BEYOND).then(|| Reach {
             seconds: last.seconds * factor.max(1.0),
             samples: rounds(last.samples as f64 * factor.max(1.0)),
             is_foretold: true,
@@ -157,6 +168,7 @@ pub mod tests {
             },
             outcomes: points.iter().enumerate().map(outcome).collect(),
             limit: 0.0,
+            is_unbiased: true,
         }
     }
 
@@ -170,9 +182,10 @@ pub mod tests {
     #[test]
     fn time_to_an_error_is_read_off_the_line_between_two_points() {
         let curve = curve(&[[1.0, 0.08], [4.0, 0.04], [16.0, 0.02]]);
-        let reach = curve.reach(0.04 / 2f64.sqrt()).unwrap();
-        assert!((reach.seconds - 8.0).abs() < 1e-12 && !reach.is_foretold);
-        assert_eq!(reach.samples, 512);
+        // (0.08/0.05)² times the time and the samples, these in whole rounds: 163.84 is two of them and a part.
+        let reach = curve.reach(0.05).unwrap();
+        assert!((reach.seconds - 2.56).abs() < 1e-12 && !reach.is_foretold);
+        assert_eq!(reach.samples, 192);
         // Before the first point nothing is known of less time.
         assert_eq!(curve.reach(0.5).unwrap().samples, 64);
     }
@@ -190,6 +203,7 @@ pub mod tests {
         let mut curve = curve(&[[1.0, 0.08], [4.0, 0.02]]);
         curve.limit = 0.04;
         assert_eq!(curve.points().count(), 1);
+        assert_eq!(curve.untold().map(|outcome| outcome.samples), Some(256));
         let reach = curve.reach(0.04).unwrap();
         assert!((reach.seconds - 2.0).abs() < 1e-12 && !reach.is_foretold);
         // Foretold from the last point that can be told, not from the one that cannot.
@@ -209,6 +223,8 @@ pub mod tests {
         assert_eq!(blind.reach(0.03), None);
         blind.outcomes[0].bias = None;
         assert_eq!(blind.floor(), None);
+        blind.is_unbiased = false;
+        assert_eq!(blind.reach(0.03), None);
     }
 
     #[test]

@@ -66,15 +66,17 @@ fn shown(curve: &Curve) -> impl Iterator<Item = &Outcome> {
 impl Axes {
     /// Axes that hold all points, with some room; time spans at least a decade.
     fn around(curves: &[Curve], limit: f64) -> Option<Self> {
-        let points = || curves.iter().flat_map(shown);
         let ends = |values: &mut dyn Iterator<Item = f64>| {
             values.fold([f64::INFINITY, 0.0], |[low, high], value| {
                 [low.min(value), f64::max(high, value)]
             })
         };
-        let [first, last] = ends(&mut points().map(|point| point.seconds));
+        let points = || curves.iter().flat_map(shown);
+        let bounds = curves.iter().filter_map(Curve::untold);
+        let seconds = points().chain(bounds).map(|point| point.seconds);
+        let [first, last] = ends(&mut { seconds });
         let [least, most] = ends(&mut points().map(|point| 100.0 * point.rms_error));
-        if first > last {
+        if least > most {
             return None;
         }
         let first = first.max(1e-9);
@@ -85,7 +87,7 @@ impl Axes {
         };
         Some(Self {
             time: Scale::by_decades(first / 1.4, (last * 1.4).max(10.0 * first)),
-            error: Scale::by_decades(low / 1.5, (most * 1.5).max(10.0 * low)),
+            error: Scale::by_decades(low / 1.8, (most * 1.5).max(10.0 * low)),
         })
     }
 
@@ -110,9 +112,9 @@ impl Axes {
             right - left,
             bottom - y,
             text(
-                [right - 8.0, 0.5 * (y + bottom) + 4.0],
+                [left + 8.0, bottom - 8.0],
                 SMALL,
-                Anchor::End,
+                Anchor::Start,
                 "finer than the reference can tell"
             )
         )
@@ -199,6 +201,14 @@ impl Axes {
         for at in places {
             drawing += &style.mark(at);
         }
+        if let Some(untold) = curve.untold() {
+            // Known to be below, and no more: a mark under the limit that points down.
+            let [x, y] = self.place([untold.seconds, curve.limit]);
+            let arrow = [[x, y + 10.0], [x, y + 24.0], [x - 3.0, y + 19.0]];
+            let barb = [[x, y + 24.0], [x + 3.0, y + 19.0]];
+            drawing += &style.arrow(&(path_data(&arrow) + &path_data(&barb)));
+            drawing += &style.mark([x, y + 10.0]);
+        }
         drawing
     }
 }
@@ -236,6 +246,13 @@ impl Style {
             self.colour,
             if self.is_first { 2.4 } else { 1.4 },
             DASHES[self.shape % DASHES.len()]
+        )
+    }
+
+    fn arrow(&self, data: &str) -> String {
+        format!(
+            "<path fill=\"none\" stroke=\"{}\" stroke-width=\"1.4\" d=\"{data}\"/>\n",
+            self.colour
         )
     }
 

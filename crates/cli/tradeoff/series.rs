@@ -255,6 +255,7 @@ impl<'a> Series<'a> {
                     .filter_map(|trial| trial.outcome(reference))
                     .collect(),
                 limit: reference.limit(),
+                is_unbiased: setting.shortcomings(self.scene).is_empty(),
             })
             .filter(|curve| !curve.outcomes.is_empty())
             .collect()

@@ -38,8 +38,9 @@ const TRIED: f64 = 0.4;
 /// Mirrors after which a ray is not followed any further.
 const LONGEST_CHAIN: u32 = 10_000;
 
-/// Tries after which an image is given up.
-const MOST_TRIES: u32 = 1 << 16;
+/// Tries after which, and after twice as many each time, half of the images are tried no further and the tries of the others
+/// count twice.
+const TRIES: u64 = 16;
 
 /// Distance within which two images are one, as a share of the scene's radius.
 const APART: f64 = 1e-6;
@@ -271,6 +272,9 @@ impl Mirrors {
 
     /// One over the probability with which a direction of the hemisphere lies in the cone about an image and leads to it
     /// as `ray` does, without bias; `None` where `direction`, which has led there, lies outside.
+    ///
+    /// It is the mean number of tries that this takes, Σ (1 − p)ᵗ. Where the mirrors of a room make images without number, p
+    /// has no bound, but the tries that are made grow as log 1/p.
     fn tried(
         &self,
         viewer: &Viewer,
@@ -284,11 +288,10 @@ impl Mirrors {
         if direction.dot(cone.axis) < cone.cos {
             return None;
         }
-        for count in 1..=MOST_TRIES {
-            let [u, v, mut select, _] = tries.next();
+        let leads = |[u, v, mut select, _]: [f64; 4], tries: &mut Fresh| {
             let tried = in_cone(cone.axis, cone.cos, [u, v]);
             if tried.dot(viewer.normal) <= 0.0 {
-                continue;
+                return false;
             }
             let mut retraced = Ray::new(viewer, tried);
             while retraced.facets.len() < ray.facets.len()
@@ -297,13 +300,26 @@ impl Mirrors {
                 retraced.reflect(facet, self.facet(facet));
                 [select, ..] = tries.next();
             }
-            if retraced.facets.len() == ray.facets.len()
+            retraced.facets.len() == ray.facets.len()
                 && self.same(self.image(&retraced.facets, target), image)
-            {
-                return Some(f64::from(count) / cone.share());
+        };
+        let (mut sum, mut weight, mut count, mut octave) = (1.0, 1.0, 0, TRIES);
+        loop {
+            let numbers = tries.next();
+            if leads(numbers, &mut tries) {
+                break;
             }
+            count += 1;
+            if count == octave {
+                if numbers[3] < 0.5 {
+                    break;
+                }
+                weight *= 2.0;
+                octave *= 2;
+            }
+            sum += weight;
         }
-        None
+        Some(sum / cone.share())
     }
 
     /// Whether two places are one.

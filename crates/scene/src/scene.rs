@@ -88,6 +88,7 @@ impl Scene {
         warnings.extend(doubts);
         panes::check(&surfaces, &materials, &assembly.objects, &file.library)?;
         warnings.extend(no_mirrors(&materials));
+        warnings.extend(white(&materials));
 
         let sources = sources(file.sources, &imports);
         lit(path, &surfaces, &materials, &sources)?;
@@ -258,12 +259,7 @@ fn no_mirrors(materials: &[Material]) -> Option<String> {
         let mut values = material.values.iter();
         values.any(|value| value.key == "a" && value.origin == unsaid)
     };
-    let names: BTreeSet<&str> = materials
-        .iter()
-        .filter(has)
-        .map(|it| it.name.as_str())
-        .collect();
-    let names: Vec<String> = names.into_iter().map(str::to_owned).collect();
+    let names = names_of(materials.iter().filter(has));
     (!names.is_empty()).then(|| {
         format!(
             "{} materials have a = 0, because their MTL fields say nothing of mirror-like reflection (illum < 3): {}; give a in the scene file",
@@ -271,6 +267,25 @@ fn no_mirrors(materials: &[Material]) -> Option<String> {
             defects::listed(&names)
         )
     })
+}
+
+/// Says which materials scatter without any loss.
+fn white(materials: &[Material]) -> Option<String> {
+    let scatters = |it: &&Material| it.optics.scattering() > 0.0 && it.optics.is_lossless();
+    let names = names_of(materials.iter().filter(scatters));
+    (!names.is_empty()).then(|| {
+        format!(
+            "{} materials keep no light (rho = 1): {}; real ones keep some, and what is caught between such surfaces is followed for a million reflections, which takes long",
+            names.len(),
+            defects::listed(&names)
+        )
+    })
+}
+
+/// Each name once, in the order of the alphabet.
+fn names_of<'a>(materials: impl Iterator<Item = &'a Material>) -> Vec<String> {
+    let names: BTreeSet<&str> = materials.map(|it| it.name.as_str()).collect();
+    names.into_iter().map(str::to_owned).collect()
 }
 
 /// Blender writes lamps as W × 683/4π cd and emission strengths as they stand: within one file they do not agree.

@@ -5,7 +5,8 @@ use proptest::prelude::*;
 
 use super::{Chain, Surface};
 use crate::{
-    Basis, Carried, Coated, Index, Material, Mueller, Stokes, basis::tests::unit_vector, coherency,
+    Basis, Carried, Coated, Incidence, Index, Material, Mueller, Stokes, angle_of_incidence,
+    basis::tests::unit_vector, coherency,
 };
 
 fn index() -> impl Strategy<Value = Index> {
@@ -52,7 +53,71 @@ fn source() -> impl Strategy<Value = Basis<Carried>> {
     [unit_vector(), unit_vector()].prop_map(|[direction, axis]| Basis::new(direction, axis))
 }
 
+/// A whole path: mirrors and panes, a coated diffuser, mirrors and panes again.
+struct Path {
+    matrix: [[f64; 4]; 4],
+    arriving: DVec3,
+    conditioning: f64,
+    /// No element is greater.
+    bound: f64,
+}
+
+impl Path {
+    /// The diffuser stands across `normal` and sends light on along `scattered`; what arrives is read with x along `axis`.
+    fn new(
+        source: Basis<Carried>,
+        before: &[Surface],
+        (diffuser, normal): (&Material, DVec3),
+        scattered: DVec3,
+        after: &[Surface],
+        axis: DVec3,
+    ) -> Self {
+        let across = |direction| Basis::<Incidence>::mirror(direction, normal).0.axis();
+        let taken = Chain::new(source, before, axis).arriving.direction();
+        let before = Chain::new(source, before, across(taken));
+        let after = Chain::new(Basis::new(scattered, across(scattered)), after, axis);
+        let ((cos_in, sin2_in), (cos_out, sin2_out)) = (
+            angle_of_incidence(taken, normal),
+            angle_of_incidence(scattered, normal),
+        );
+        let row = diffuser.entering::<4>(cos_in, sin2_in).components();
+        let column = diffuser.leaving::<4>(cos_out, sin2_out).components();
+        let (first, last) = (before.matrix::<4>().rows(), after.matrix::<4>().rows());
+        let sum = |of: &dyn Fn(usize) -> f64| (0..4).map(of).sum::<f64>();
+        let read: [f64; 4] = std::array::from_fn(|j| sum(&|k| row[k] * first[k][j]));
+        let sent: [f64; 4] = std::array::from_fn(|i| sum(&|k| last[i][k] * column[k]));
+        Self {
+            matrix: sent.map(|left| read.map(|right| diffuser.scattering() * left * right)),
+            arriving: after.arriving.direction(),
+            conditioning: before.conditioning.min(after.conditioning),
+            bound: before.bound() * after.bound(),
+        }
+    }
+}
+
 proptest! {
+    #[test]
+    fn a_whole_path_reversed_has_the_transposed_matrix(
+        source in source(), before in surfaces(), coat in (0.0..=1.0, 1.0..3.0), [normal, scattered] in [unit_vector(), unit_vector()],
+        after in surfaces(), axis in unit_vector()
+    ) {
+        // M′ = D Mᵀ D, as for chains without scattering.
+        let diffuser = (&Material::Coated(Coated::new(coat.0, coat.1)), normal);
+        let there = Path::new(source, &before, diffuser, scattered, &after, axis);
+        prop_assume!(there.conditioning > 1e-3);
+        let turned = |surfaces: &[Surface]| surfaces.iter().rev().copied().collect::<Vec<_>>();
+        let taken = Chain::new(source, &before, axis).arriving.direction();
+        let start = Basis::new(-there.arriving, axis);
+        let back = Path::new(start, &turned(&after), diffuser, -taken, &turned(&before), source.axis());
+        prop_assert!(back.arriving.distance(-source.direction()) < 1e-13);
+        for (row, elements) in back.matrix.iter().enumerate() {
+            for (column, element) in elements.iter().enumerate() {
+                let sign = if (row == 2) == (column == 2) { 1.0 } else { -1.0 };
+                prop_assert!((element - sign * there.matrix[column][row]).abs() <= 1e-12 * there.bound + 1e-14);
+            }
+        }
+    }
+
     #[test]
     fn products_keep_light_physical(
         source in source(), surfaces in surfaces(), polarised in unit_vector(), degree in 0.0..=1.0f64

@@ -423,3 +423,21 @@ fn a_closed_room_that_loses_nothing_is_refused_and_an_open_one_is_not() {
         .is_ok()
     );
 }
+
+#[test]
+fn white_materials_are_named() {
+    let told = |material: &str| {
+        let text = format!("{}{LAMP}{FLOOR}", CUBE.replace("rho = 0.5", material));
+        let sheet = "[[shape]]\nkind = \"rectangle\"\norigin = [1, 1, 1]\nu = [1, 0, 0]\nv = [0, 1, 0]\nmaterial = \"sheet\"\n\
+            [material.sheet]\nrho = 0.5\n";
+        let warnings = Room::new(&format!("{text}{sheet}")).load().warnings;
+        warnings
+            .iter()
+            .any(|it| it.contains("keep no light (rho = 1): plaster"))
+    };
+    assert!(told("rho = 1"));
+    assert!(told("rho = 1\nkind = \"coated\""));
+    for lossy in ["rho = 0.999", "rho = 1\na = 0.5", "a = 1\nn = inf\nrho = 1"] {
+        assert!(!told(lossy), "{lossy}");
+    }
+}
