@@ -156,6 +156,9 @@ impl Computing {
     }
 }
 
+/// More threads than any machine has cores: beyond, starting them is all that a run would do.
+const MOST_THREADS: usize = 1024;
+
 /// Number of threads asked for, or as many as there are cores.
 ///
 /// # Errors
