@@ -5,9 +5,6 @@ use anyhow::anyhow;
 use clap::Args;
 use malus_scene::{Error, Override};
 
-/// More threads than any machine has cores: beyond, starting them is all that a run would do.
-const MOST_THREADS: usize = 1024;
-
 /// How a scene is to be computed.
 #[derive(Args, Debug)]
 pub struct Computing {
