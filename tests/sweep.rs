@@ -149,7 +149,7 @@ fn a_variant_that_fails_is_named_and_the_others_are_finished() {
     let output = sweep(&folder, &[]);
     let told = stderr(&output);
     assert_eq!(output.status.code(), Some(1), "{told}");
-    let wrong = "study.toml:3:31: [material.plaster] a must be a number from 0 to 1, found 1.5";
+    let wrong = "study.toml:3:30: [material.plaster] a must be a number from 0 to 1, found 1.5";
     assert!(told.contains(&format!("warning: {wrong}")), "{told}");
     assert!(
         told.contains(&format!("error: variant 002: {wrong}")),

@@ -38,6 +38,8 @@ pub struct Measured {
     pub u0: f64,
     /// Mean degree of linear polarisation.
     pub dolp_mean: f64,
+    /// Whether it is more than one free point: one is as even as can be.
+    several: bool,
     replicates: Replicates,
 }
 
@@ -55,8 +57,11 @@ pub enum Quantity {
 impl Measured {
     /// The figures of a group.
     pub fn of(group: &Group) -> Option<Self> {
-        let free = Digest::of(group).free?;
+        let digest = Digest::of(group);
+        let several = digest.count > digest.enclosed + 1;
+        let free = digest.free?;
         Some(Self {
+            several,
             mean: free.mean,
             mean_standard_error: free.mean_standard_error,
             min: free.min,
@@ -72,7 +77,7 @@ impl Measured {
         let Replicates { mean, min, scalar } = &self.replicates;
         match quantity {
             Quantity::Mean => Some(mean.clone()),
-            Quantity::Uniformity if self.mean > 0.0 => {
+            Quantity::Uniformity if self.several && self.mean > 0.0 => {
                 let expanded =
                     |(min, mean): (&f64, &f64)| self.u0 + (min - self.u0 * mean) / self.mean;
                 Some(min.iter().zip(mean).map(expanded).collect())
@@ -108,6 +113,7 @@ pub mod tests {
             min: of_min.mean,
             u0: of_min.mean / of_mean.mean,
             dolp_mean: 0.0,
+            several: true,
             replicates: Replicates {
                 mean: mean.to_vec(),
                 min: min.to_vec(),

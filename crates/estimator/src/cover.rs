@@ -180,26 +180,28 @@ impl Cover {
     /// Whether the walks serve every variant well: the mean square of a weight at one event, over diffuse light, is below
     /// 1, so that it cannot grow from event to event, and at most twice what a variant's own walks have.
     pub(crate) fn serves_all(&self) -> bool {
-        self.optics.iter().all(|own| {
-            let bounds = |cos: f64| {
-                let sin2 = 1.0 - cos * cos;
-                [
-                    own.diffuse_bound(cos, sin2),
-                    own.mirror(cos, sin2).bound().min(1.0),
-                ]
-            };
-            let alone = mean(|cos| bounds(cos).iter().sum());
-            let square = mean(|cos| {
-                let sin2 = 1.0 - cos * cos;
-                let odds = self.odds((cos, sin2), &Reflection::NONE, &Reflection::NONE);
-                let weighted = bounds(cos).into_iter().zip([odds.diffuse, odds.mirror]);
-                weighted
-                    .filter(|it| it.0 > 0.0)
-                    .map(|(own, odds)| own * own / odds)
-                    .sum()
-            });
-            square <= (2.0 * alone).min(1.0)
-        })
+        // One alone has its own odds.
+        self.optics.len() == 1
+            || self.optics.iter().all(|own| {
+                let bounds = |cos: f64| {
+                    let sin2 = 1.0 - cos * cos;
+                    [
+                        own.diffuse_bound(cos, sin2),
+                        own.mirror(cos, sin2).bound().min(1.0),
+                    ]
+                };
+                let alone = mean(|cos| bounds(cos).iter().sum());
+                let square = mean(|cos| {
+                    let sin2 = 1.0 - cos * cos;
+                    let odds = self.odds((cos, sin2), &Reflection::NONE, &Reflection::NONE);
+                    let weighted = bounds(cos).into_iter().zip([odds.diffuse, odds.mirror]);
+                    weighted
+                        .filter(|it| it.0 > 0.0)
+                        .map(|(own, odds)| own * own / odds)
+                        .sum()
+                });
+                square <= (2.0 * alone).min(1.0)
+            })
     }
 }
 
@@ -245,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn no_lobe_of_any_variant_weighs_more_than_one_where_there_is_room_for_all() {
+    fn no_lobe_of_any_variant_weighs_more_than_one_where_there_is_room() {
         let all = [
             mixture(0.5, 0.6, 1.5),
             mixture(0.3, 0.2, 2.0),
@@ -259,8 +261,13 @@ mod tests {
             assert!(odds.diffuse + odds.mirror <= 1.0);
             for own in all {
                 assert!(own.scattering() <= odds.diffuse);
+                // The bound is known at 129 cosines; at a grazing angle there is no room left for all of it.
                 let mirrored = own.mirror(cos, 1.0 - cos * cos).bound();
-                assert!(mirrored <= odds.mirror.max(1.0 - odds.diffuse), "{cos}");
+                let full = odds.diffuse + odds.mirror > 1.0 - 1e-12;
+                assert!(
+                    mirrored <= 1.001 * odds.mirror || full && cos < 0.2,
+                    "{cos}"
+                );
             }
         }
     }

@@ -41,13 +41,13 @@ pub(super) fn list(field: Field, folder: &Path, study: &mut Study) -> Result<(),
         .clone();
     let keys = header
         .iter()
-        .zip(places(&shown, &header))
+        .zip(places(&shown, text, &header))
         .map(|(key, at)| Key::parse(key, &at).map(|key| Varied { key, at }))
         .collect::<Result<Vec<_>, _>>()?;
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| unreadable(error.to_string()))?;
-        let places = places(&shown, &record);
+        let places = places(&shown, text, &record);
         let values = record.iter().zip(places).map(|(text, at)| match text {
             "" => Ok(None),
             text => Node::value(text, &at).map(Some),
@@ -63,8 +63,8 @@ pub(super) fn list(field: Field, folder: &Path, study: &mut Study) -> Result<(),
 }
 
 /// Place of each field of a line; exact where no field is in quotes.
-fn places(file: &Arc<str>, record: &csv::StringRecord) -> Vec<Place> {
-    let line = record.position().map_or(1, csv::Position::line) as usize;
+fn places(file: &Arc<str>, text: &[u8], record: &csv::StringRecord) -> Vec<Place> {
+    let line = record.position().map_or(1, |position| line(text, position));
     let mut column = 1;
     record
         .iter()
@@ -78,4 +78,12 @@ fn places(file: &Arc<str>, record: &csv::StringRecord) -> Vec<Place> {
             place
         })
         .collect()
+}
+
+/// The line of a record that is said to begin at a position: comments and empty lines before it are passed over.
+fn line(text: &[u8], position: &csv::Position) -> usize {
+    let rest = &text[(position.byte() as usize).min(text.len())..];
+    let passed_over = |row: &&[u8]| row.starts_with(b"#") || row.trim_ascii().is_empty();
+    let before = rest.split(|byte| *byte == b'\n').take_while(passed_over);
+    position.line() as usize + before.count()
 }
