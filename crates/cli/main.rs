@@ -2,6 +2,7 @@
 
 mod analyse;
 mod args;
+mod bench_bvh;
 mod check;
 mod colour;
 mod contour;
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
         Command::Run(command) => run::run(&command),
         Command::Analyse(command) => analyse::analyse(&command).map(|()| run::End::Complete),
         Command::Check(command) => check::check(&command).map(|()| run::End::Complete),
+        Command::BenchBvh(command) => bench_bvh::bench_bvh(&command).map(|()| run::End::Complete),
     };
     match end {
         Ok(run::End::Complete) => ExitCode::SUCCESS,

@@ -29,7 +29,7 @@ pub enum End {
 /// # Errors
 /// Bad arguments, a bad scene, or a run that failed.
 pub fn run(command: &args::Run) -> Result<End, Failure> {
-    let threads = threads(command)?;
+    let threads = threads(command.threads.as_deref())?;
     let scene = load(command)?;
     let mut settings = scene.settings.clone();
     stop::narrow(&mut settings, &command.overrides());
@@ -98,8 +98,8 @@ fn load(command: &args::Run) -> Result<Scene, Failure> {
 const MOST_THREADS: usize = 1024;
 
 /// Number of threads asked for, or as many as there are cores.
-fn threads(command: &args::Run) -> Result<usize, Failure> {
-    let Some(text) = &command.threads else {
+pub fn threads(asked: Option<&str>) -> Result<usize, Failure> {
+    let Some(text) = asked else {
         return Ok(std::thread::available_parallelism().map_or(1, usize::from));
     };
     text.parse()

@@ -9,6 +9,7 @@ use crate::random::{Stream, Uniforms};
 use crate::receiver::Receiver;
 use crate::trace::{Path, Techniques, Vertex, Walk};
 use glam::DVec3;
+use malus_geometry::{Surfaces, Targets};
 use malus_optics::angle_of_incidence;
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -23,6 +24,7 @@ pub(crate) fn local<'a, const N: usize>(
     sums: &mut [f64],
 ) -> Effort {
     let mut effort = Effort::default();
+    let targets = targets(passes.main.surfaces, receivers);
     for index in range {
         let uniforms = stream.walk(index);
         // A start on a hidden part of an emitter carries nothing.
@@ -31,11 +33,12 @@ pub(crate) fn local<'a, const N: usize>(
         };
         // Where walks from the sensors look at emitters, they alone answer for light that comes straight.
         if !passes.techniques.gather {
-            effort += emit::<N>(passes, channels, receivers, &start, sums);
+            effort += emit::<N>(passes, channels, receivers, &targets, &start, sums);
         }
         let joining = Joining {
             techniques: passes.techniques,
             receivers,
+            targets: &targets,
             uniforms,
         };
         let mut main = Carrying::<N>::new(&start);
@@ -98,6 +101,7 @@ fn emit<const N: usize>(
     passes: &Passes,
     channels: &Channels,
     receivers: &[Receiver],
+    targets: &Targets,
     start: &Start,
     sums: &mut [f64],
 ) -> Effort {
@@ -105,9 +109,21 @@ fn emit<const N: usize>(
         return Effort::default();
     };
     let mut steps = Vec::new();
-    for (receiver, sums) in receivers.iter().zip(sums.chunks_mut(channels.count)) {
+    let seen = seen(&passes.main, start.origin, normal, targets);
+    let sums = sums.chunks_mut(channels.count);
+    for (sensor, (receiver, sums)) in receivers.iter().zip(sums).enumerate() {
+        if !seen.as_ref().is_none_or(|seen| seen[sensor]) {
+            continue;
+        }
         steps.clear();
-        let way = straight(&passes.main, start.origin, normal, receiver, &mut steps);
+        let way = straight(
+            &passes.main,
+            start.origin,
+            normal,
+            receiver,
+            seen.is_some(),
+            &mut steps,
+        );
         let Some(way) = way else {
             continue;
         };
@@ -130,6 +146,7 @@ fn emit<const N: usize>(
 struct Joining<'r> {
     techniques: Techniques,
     receivers: &'r [Receiver],
+    targets: &'r Targets,
     uniforms: Uniforms,
 }
 
@@ -209,9 +226,21 @@ impl Joining<'_> {
             let scalar = joined::<1>(receiver, material, normal, direction, steps);
             (light.components(), scalar.i())
         };
+        let seen = seen(medium, vertex.position, vertex.normal, self.targets);
         for (sensor, receiver) in self.receivers.iter().enumerate() {
             steps.clear();
-            let way = straight(medium, vertex.position, vertex.normal, receiver, &mut steps);
+            let way = if seen.as_ref().is_none_or(|seen| seen[sensor]) {
+                straight(
+                    medium,
+                    vertex.position,
+                    vertex.normal,
+                    receiver,
+                    seen.is_some(),
+                    &mut steps,
+                )
+            } else {
+                None
+            };
             if let Some(way) = way {
                 let mut weight = way.coupling;
                 if self.techniques.gather {
@@ -278,13 +307,35 @@ impl Joining<'_> {
     }
 }
 
+/// The receivers as targets; those that light cannot be joined to straight are seen from nowhere.
+fn targets(surfaces: &Surfaces, receivers: &[Receiver]) -> Targets {
+    let targets = receivers.iter().map(|receiver| {
+        let joined = receiver.is_irradiance() && !receiver.enclosed;
+        (receiver.origin, receiver.normal * f64::from(joined))
+    });
+    surfaces.targets(&targets.collect::<Vec<_>>())
+}
+
+/// Which receivers a point sees, all asked for at once; `None` where panes leave more than yes and no.
+fn seen(medium: &Medium, from: DVec3, normal: DVec3, targets: &Targets) -> Option<Vec<bool>> {
+    if medium.panes {
+        return None;
+    }
+    let mut seen = Vec::new();
+    medium
+        .surfaces
+        .visible_from(from, normal, targets, &mut seen);
+    Some(seen)
+}
+
 /// The way straight from a point to a receiver, by panes at most: irradiance there per flux scattered by Lambert's law,
-/// cos θ cos θ′ Θ/(π |r − r′|²) (eq. 16).
+/// cos θ cos θ′ Θ/(π |r − r′|²) (eq. 16). Whether it is `clear` may be known already.
 fn straight(
     medium: &Medium,
     from: DVec3,
     normal: DVec3,
     receiver: &Receiver,
+    clear: bool,
     steps: &mut Vec<Step>,
 ) -> Option<Joined> {
     if receiver.enclosed || !receiver.is_irradiance() {
@@ -298,10 +349,16 @@ fn straight(
     }
     let square = segment.length_squared();
     let direction = segment / square.sqrt();
-    let passage = medium.passage(from, Some(receiver.origin), direction, steps)?;
+    let odds = if clear {
+        1.0
+    } else {
+        medium
+            .passage(from, Some(receiver.origin), direction, steps)?
+            .odds
+    };
     Some(Joined {
         direction,
         coupling: leaving * arriving / (PI * square * square),
-        odds: passage.odds,
+        odds,
     })
 }

@@ -38,6 +38,7 @@ mod error;
 mod facets;
 mod holes;
 mod mesh;
+mod planes;
 mod polygon;
 mod surfaces;
 #[cfg(test)]
@@ -45,6 +46,7 @@ mod testing;
 mod triangle;
 mod weld;
 
+pub use bvh::{Layout, Preset, Targets, Tree, TreeFacts};
 pub use clean::Cleaned;
 pub use coincidence::Coincidence;
 pub use error::Error;
