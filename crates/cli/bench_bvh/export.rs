@@ -23,7 +23,7 @@ pub fn export(surfaces: &Surfaces, rays: &Rays, directory: &Directory) -> anyhow
 
 fn bytes(vectors: impl Iterator<Item = DVec3>) -> Vec<u8> {
     vectors
-        .flat_map(DVec3::to_array)
+        .flat_map(|vector| vector.to_array())
         .flat_map(f64::to_le_bytes)
         .collect()
 }
