@@ -1,4 +1,4 @@
-//! Rays through the Blender office: first hits and Θ between two points.
+//! Rays through the Blender office: first hits, Θ between two points, and from one point to a grid of sensors.
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
@@ -52,5 +52,40 @@ fn rays(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, rays);
+fn sensors(criterion: &mut Criterion) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/office.toml");
+    let scene = Scene::load(&path, &[]).expect("the scene of this repository");
+    let grid: Vec<(DVec3, DVec3)> = (0..256)
+        .map(|i| {
+            let [x, y] = [i % 16, i / 16].map(f64::from);
+            (DVec3::new(0.5 + 0.3 * x, 0.5 + 0.2 * y, 0.75), DVec3::Z)
+        })
+        .collect();
+    let targets = scene.surfaces.targets(&grid);
+    let from = points(64);
+    let mut group = criterion.benchmark_group("office, a point to 256 sensors");
+    group.throughput(criterion::Throughput::Elements(64 * 256));
+    group.bench_function("in packets", |bencher| {
+        let mut seen = Vec::new();
+        bencher.iter(|| {
+            for &point in &from {
+                let surfaces = &scene.surfaces;
+                surfaces.visible_from(point, DVec3::NEG_Z, &targets, &mut seen);
+                black_box(&seen);
+            }
+        });
+    });
+    group.bench_function("one by one", |bencher| {
+        bencher.iter(|| {
+            for &point in &from {
+                for &(sensor, _) in &grid {
+                    black_box(point.z > sensor.z && scene.surfaces.visible(point, sensor));
+                }
+            }
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, rays, sensors);
 criterion_main!(benches);

@@ -2,6 +2,7 @@
 
 mod analyse;
 mod bad_input;
+mod bench_bvh;
 mod printed;
 mod results;
 mod shards;

@@ -3,6 +3,7 @@
 mod analyse;
 mod args;
 mod batch;
+mod bench_bvh;
 mod chart;
 mod check;
 mod colour;
@@ -61,6 +62,7 @@ fn main() -> ExitCode {
         Command::Analyse(command) => analyse::analyse(&command).map(|()| run::End::Complete),
         Command::Tradeoff(command) => tradeoff::tradeoff(&command),
         Command::Check(command) => check::check(&command).map(|()| run::End::Complete),
+        Command::BenchBvh(command) => bench_bvh::bench_bvh(&command).map(|()| run::End::Complete),
     };
     match end {
         Ok(run::End::Complete) => ExitCode::SUCCESS,

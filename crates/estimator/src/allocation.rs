@@ -6,12 +6,13 @@
 //! cost; as they depend on scene and seed alone, the sums of a run do not depend on when it stops.
 
 use crate::gather::{Aims, Observer, gather};
-use crate::local::local;
+use crate::local::{Sensors, local};
 use crate::medium::Medium;
 use crate::pass::{Channels, Effort, Passes};
 use crate::random::Stream;
 use crate::receiver::Receiver;
 use crate::statistics::REPLICAS;
+use malus_geometry::Targets;
 use rayon::prelude::*;
 
 /// A sensor's share of walks is a multiple of one over this.
@@ -72,6 +73,7 @@ impl Allocation {
     pub(crate) fn piloted(
         passes: &Passes,
         receivers: &[Receiver],
+        targets: &Targets,
         aims: &[Aims],
         exact: impl Fn(usize) -> f64,
         seed: u64,
@@ -94,6 +96,7 @@ impl Allocation {
             },
             channels: Channels::of_intensity(),
             receivers,
+            targets,
             aims,
             tried: Self {
                 parts: vec![TRIED; sensors],
@@ -197,6 +200,7 @@ struct Pilot<'a> {
     passes: Passes<'a>,
     channels: Channels,
     receivers: &'a [Receiver],
+    targets: &'a Targets,
     aims: &'a [Aims<'a>],
     /// Walks from each sensor in one round.
     walks: u64,
@@ -218,8 +222,11 @@ impl Pilot<'_> {
         let local = local::<1>(
             &self.passes,
             &self.channels,
-            self.receivers,
-            &self.tried,
+            &Sensors {
+                receivers: self.receivers,
+                targets: self.targets,
+                allocation: &self.tried,
+            },
             stream,
             0..LAUNCHED,
             &mut launched,

@@ -3,15 +3,16 @@
 use crate::allocation::Allocation;
 use crate::direct::{Cells, direct};
 use crate::gather::{Aims, Observer, gather};
-use crate::local::local;
+use crate::local::{Sensors, local};
 use crate::pass::{Channels, Effort, Passes};
 use crate::random::Stream;
 use crate::receiver::Receiver;
 use crate::statistics::{MergeError, REPLICAS, Replica, Tally};
+use malus_geometry::Targets;
 use rayon::prelude::*;
 
 /// Walks that a step takes in all, so that a watcher is asked several times a second.
-const STEP: u64 = 1 << 16;
+const STEP: u64 = 1 << 14;
 
 /// Sensors of one replica that one task gathers at.
 const TASK: usize = 16;
@@ -24,6 +25,8 @@ pub(crate) struct Engine<'a, const N: usize> {
     pub channels: Channels,
     /// The sensors.
     pub receivers: &'a [Receiver],
+    /// The sensors, to be asked which of them a point sees.
+    pub targets: &'a Targets,
     /// Walks from each sensor, relative to those from the emitters.
     pub allocation: &'a Allocation,
     /// How each sensor aims at small mirrors.
@@ -87,13 +90,21 @@ impl<const N: usize> Engine<'_, N> {
         });
     }
 
+    /// What walks from the emitters are joined to.
+    fn sensors(&self) -> Sensors<'_> {
+        Sensors {
+            receivers: self.receivers,
+            targets: self.targets,
+            allocation: self.allocation,
+        }
+    }
+
     fn advance_local(&self, replica: &mut Replica, until: u64) -> Effort {
         let stream = Stream::new(self.seed, replica.id);
         local::<N>(
             &self.passes,
             &self.channels,
-            self.receivers,
-            self.allocation,
+            &self.sensors(),
             stream,
             replica.points..until,
             &mut replica.sums[self.length()..],

@@ -11,16 +11,27 @@ use crate::receiver::Receiver;
 use crate::trace::{Path, Techniques, Vertex, Walk};
 use crate::variation::Variation;
 use glam::DVec3;
+use malus_geometry::{Surfaces, Targets};
 use malus_optics::angle_of_incidence;
 use std::f64::consts::PI;
 use std::ops::Range;
+
+/// The sensors that walks are joined to.
+#[derive(Clone, Copy)]
+pub(crate) struct Sensors<'a> {
+    /// Each of them.
+    pub receivers: &'a [Receiver],
+    /// The same, to be asked which of them a point sees.
+    pub targets: &'a Targets,
+    /// Walks of their own for one from the emitters.
+    pub allocation: &'a Allocation,
+}
 
 /// Adds the walks `range` to the sums of all sensors, at each those of one variant after those of the other.
 pub(crate) fn local<'a, const N: usize>(
     passes: &Passes<'a>,
     channels: &Channels,
-    receivers: &[Receiver],
-    allocation: &Allocation,
+    sensors: &Sensors,
     stream: Stream,
     range: Range<u64>,
     sums: &mut [f64],
@@ -39,12 +50,11 @@ pub(crate) fn local<'a, const N: usize>(
         };
         // Where walks from the sensors look at emitters, they alone answer for light that comes straight.
         if !passes.techniques.gather {
-            effort += emit::<N>(passes, channels, receivers, &start, sums);
+            effort += emit::<N>(passes, channels, sensors, &start, sums);
         }
         let joining = Joining {
             techniques: passes.techniques,
-            receivers,
-            allocation,
+            sensors,
             uniforms,
         };
         restart(&mut main, variations, &start);
@@ -126,19 +136,34 @@ fn carry<const N: usize>(
 fn emit<const N: usize>(
     passes: &Passes,
     channels: &Channels,
-    receivers: &[Receiver],
+    sensors: &Sensors,
     start: &Start,
     sums: &mut [f64],
 ) -> Effort {
+    let Sensors {
+        receivers, targets, ..
+    } = *sensors;
     let Some(normal) = start.normal else {
         return Effort::default();
     };
     let variations = passes.main.variations;
     let width = variations.len() * channels.count;
     let mut steps = Vec::new();
-    for (receiver, sums) in receivers.iter().zip(sums.chunks_mut(width)) {
+    let seen = seen(&passes.main, start.origin, normal, targets);
+    for (sensor, (receiver, sums)) in receivers.iter().zip(sums.chunks_mut(width)).enumerate() {
+        if !seen.as_ref().is_none_or(|seen| seen[sensor]) {
+            continue;
+        }
         steps.clear();
-        let way = straight(&passes.main, start.origin, normal, receiver, &mut steps);
+        let clear = seen.is_some();
+        let way = straight(
+            &passes.main,
+            start.origin,
+            normal,
+            receiver,
+            clear,
+            &mut steps,
+        );
         let Some(way) = way else {
             continue;
         };
@@ -164,8 +189,7 @@ fn emit<const N: usize>(
 #[derive(Clone, Copy)]
 struct Joining<'r> {
     techniques: Techniques,
-    receivers: &'r [Receiver],
-    allocation: &'r Allocation,
+    sensors: &'r Sensors<'r>,
     uniforms: Uniforms,
 }
 
@@ -254,7 +278,7 @@ impl Joining<'_> {
             for (vertex, fluxes) in path.vertices.iter().zip(fluxes.chunks(width)) {
                 depth += 1;
                 if fluxes.iter().any(|&f| f > 0.0) {
-                    effort.joins += self.receivers.len() as u64;
+                    effort.joins += self.sensors.receivers.len() as u64;
                     self.join(&medium, vertex, depth, |sensor, arrival| {
                         add(sensor, fluxes, arrival);
                     });
@@ -282,9 +306,21 @@ impl Joining<'_> {
         };
         let even = diffuse(vertex.normal);
         let mut steps: Vec<Step> = Vec::new();
-        for (sensor, receiver) in self.receivers.iter().enumerate() {
+        let seen = seen(medium, vertex.position, vertex.normal, self.sensors.targets);
+        for (sensor, receiver) in self.sensors.receivers.iter().enumerate() {
             steps.clear();
-            let way = straight(medium, vertex.position, vertex.normal, receiver, &mut steps);
+            let way = if seen.as_ref().is_none_or(|seen| seen[sensor]) {
+                straight(
+                    medium,
+                    vertex.position,
+                    vertex.normal,
+                    receiver,
+                    seen.is_some(),
+                    &mut steps,
+                )
+            } else {
+                None
+            };
             if let Some(way) = way {
                 let mut weight = way.coupling;
                 if self.techniques.gather {
@@ -294,10 +330,11 @@ impl Joining<'_> {
                         even
                     };
                     let coupling = way.coupling * way.odds;
-                    weight *=
-                        vertex
-                            .rival
-                            .weight(coupling, diffuse, self.allocation.launched(sensor));
+                    weight *= vertex.rival.weight(
+                        coupling,
+                        diffuse,
+                        self.sensors.allocation.launched(sensor),
+                    );
                 }
                 let arrival = Arrival {
                     receiver,
@@ -366,13 +403,35 @@ impl Joining<'_> {
     }
 }
 
+/// The receivers as targets; those that light cannot be joined to straight are seen from nowhere.
+pub(crate) fn targets(surfaces: &Surfaces, receivers: &[Receiver]) -> Targets {
+    let targets = receivers.iter().map(|receiver| {
+        let joined = receiver.is_irradiance() && !receiver.enclosed;
+        (receiver.origin, receiver.normal * f64::from(joined))
+    });
+    surfaces.targets(&targets.collect::<Vec<_>>())
+}
+
+/// Which receivers a point sees, all asked for at once; `None` where panes leave more than yes and no.
+fn seen(medium: &Medium, from: DVec3, normal: DVec3, targets: &Targets) -> Option<Vec<bool>> {
+    if medium.panes {
+        return None;
+    }
+    let mut seen = Vec::new();
+    medium
+        .surfaces
+        .visible_from(from, normal, targets, &mut seen);
+    Some(seen)
+}
+
 /// The way straight from a point to a receiver, by panes at most: irradiance there per flux scattered by Lambert's law,
-/// cos θ cos θ′ Θ/(π |r − r′|²) (eq. 16).
+/// cos θ cos θ′ Θ/(π |r − r′|²) (eq. 16). Whether it is `clear` may be known already.
 fn straight(
     medium: &Medium,
     from: DVec3,
     normal: DVec3,
     receiver: &Receiver,
+    clear: bool,
     steps: &mut Vec<Step>,
 ) -> Option<Joined> {
     if receiver.enclosed || !receiver.is_irradiance() {
@@ -386,10 +445,16 @@ fn straight(
     }
     let square = segment.length_squared();
     let direction = segment / square.sqrt();
-    let passage = medium.passage(from, Some(receiver.origin), direction, steps)?;
+    let odds = if clear {
+        1.0
+    } else {
+        medium
+            .passage(from, Some(receiver.origin), direction, steps)?
+            .odds
+    };
     Some(Joined {
         direction,
         coupling: leaving * arriving / (PI * square * square),
-        odds: passage.odds,
+        odds,
     })
 }

@@ -8,6 +8,7 @@ use crate::engine::Engine;
 use crate::exact;
 use crate::gather::Aims;
 use crate::ledger::Ledger;
+use crate::local::targets;
 use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
 use crate::reading::{Readings, Unmet, padded};
@@ -22,7 +23,7 @@ use malus_optics::Representation;
 use malus_scene::{Estimator, Model, Scene, Settings};
 
 /// Walks a replica before the first checkpoint: fewer would not tell an error from luck.
-const FIRST_CHECKPOINT: u64 = 8;
+const FIRST_CHECKPOINT: u64 = 16;
 
 /// The first checkpoint after `taken` walks a replica: four to the octave.
 fn next_checkpoint(taken: u64) -> u64 {
@@ -182,12 +183,13 @@ fn run_with<const N: usize>(
         None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref(), variation),
     };
     let exact: Vec<Vec<[f64; N]>> = passes.main.variations.iter().map(exact).collect();
+    let targets = targets(&scene.surfaces, &receivers);
     let aims = Aims::all(&passes, &receivers);
     let allocation = match like {
         Some(like) => like.clone(),
         None if techniques.gather && techniques.local > 0.0 => {
             let exact = |sensor: usize| exact[0][sensor][0];
-            Allocation::piloted(&passes, &receivers, &aims, exact, settings.seed)
+            Allocation::piloted(&passes, &receivers, &targets, &aims, exact, settings.seed)
         }
         None => Allocation::even(receivers.len()),
     };
@@ -195,6 +197,7 @@ fn run_with<const N: usize>(
         passes,
         channels,
         receivers: &receivers,
+        targets: &targets,
         allocation: &allocation,
         aims: &aims,
         cells: cells.as_ref(),
@@ -358,6 +361,6 @@ mod tests {
                 taken
             })
             .collect();
-        assert_eq!(checkpoints, [8, 10, 12, 14, 16, 20, 24, 28, 32, 40]);
+        assert_eq!(checkpoints, [16, 20, 24, 28, 32, 40, 48, 56, 64, 80]);
     }
 }

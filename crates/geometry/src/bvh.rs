@@ -1,110 +1,38 @@
-//! Adapter to the tree of boxes of `obvhs`: which triangles may a ray cross?
+//! Adapter to the trees of boxes of `obvhs`: which triangles may a ray cross?
 //!
-//! The tree is single precision and only culls. It is built in a frame moved to the scene's centre and scaled by a
+//! A tree is single precision and only culls. It is built in a frame moved to the scene's centre and scaled by a
 //! power of two to an extent of about 10³, its boxes are rounded outwards and padded by more than the rounding
 //! errors of a box test add up to, and distances handed to it are rounded up; what is crossed, and where, is decided
-//! in double precision by [`Line::crossing`].
+//! in double precision by [`Line::crossing`]. So every tree gives the same answers to the last bit.
+
+mod facts;
+mod frame;
+mod lanes;
+mod layout;
+mod packet;
+mod wide;
 
 use crate::Mesh;
 use crate::crossing::Line;
+use frame::{Frame, rounded_up};
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
-use obvhs::bvh2::{Bvh2, leaf_collapser::collapse, reinsertion::ReinsertionOptimizer};
-use obvhs::ploc::PlocBuilder;
-use obvhs::ray::{Ray, RayHit, safe_inverse};
-use obvhs::{Boundable, BvhBuildParams};
 
-/// Extent to which the scene is scaled, to within a factor of two.
-const EXTENT: f64 = 1024.0;
+pub use facts::TreeFacts;
+use layout::{Boxes, ENOUGH, Visit};
+pub use layout::{Layout, Preset};
+pub(crate) use packet::Question;
+use packet::Sight;
+pub use packet::Targets;
 
-/// A frame around the scene in which single precision is enough for culling.
-#[derive(Debug, Clone, Copy)]
-struct Frame {
-    centre: DVec3,
-    /// A power of two.
-    scale: f64,
-    /// By how much boxes grow, in the frame's units.
-    pad: f64,
-}
-
-impl Frame {
-    /// A box test errs by at most 4.5 ε·radius: ½ from rounding the origin, 1 from the difference to the box's side,
-    /// 3 from the direction, its inverse and the product. The padding is 4 ε·extent = 8 ε·radius.
-    fn new(centre: DVec3, radius: f64, slack: f64) -> Self {
-        let mut scale = 1.0;
-        while 2.0 * radius * scale > EXTENT {
-            scale *= 0.5;
-        }
-        while radius > 0.0 && 2.0 * radius * scale <= 0.5 * EXTENT {
-            scale *= 2.0;
-        }
-        let extent = 2.0 * radius * scale;
-        Self {
-            centre,
-            scale,
-            pad: 4.0 * f64::from(f32::EPSILON) * extent + slack * scale,
-        }
-    }
-
-    fn boxed(&self, corners: &[DVec3]) -> Aabb {
-        let least = corners
-            .iter()
-            .fold(DVec3::INFINITY, |least, &corner| least.min(corner));
-        let most = corners
-            .iter()
-            .fold(DVec3::NEG_INFINITY, |most, &corner| most.max(corner));
-        let least = (least - self.centre) * self.scale - self.pad;
-        let most = (most - self.centre) * self.scale + self.pad;
-        Aabb::new(
-            Vec3A::from_array(least.to_array().map(rounded_down)),
-            Vec3A::from_array(most.to_array().map(rounded_up)),
-        )
-    }
-
-    fn ray(&self, line: &Line, length: f64) -> Ray {
-        let origin = ((line.origin - self.centre) * self.scale).as_vec3a();
-        // A negative zero would turn its inverse to the wrong side of a box.
-        let direction = line.direction.as_vec3a() + Vec3A::ZERO;
-        Ray {
-            origin,
-            direction,
-            inv_direction: Vec3A::from_array(direction.to_array().map(safe_inverse)),
-            tmin: 0.0,
-            tmax: rounded_up(length * self.scale),
-        }
-    }
-}
-
-#[allow(clippy::cast_possible_truncation)]
-fn rounded_up(value: f64) -> f32 {
-    let single = value as f32;
-    if f64::from(single) < value {
-        single.next_up()
-    } else {
-        single
-    }
-}
-
-fn rounded_down(value: f64) -> f32 {
-    -rounded_up(-value)
-}
-
-/// One triangle of a mesh, for the builder to ask for its box.
-struct Bounded<'a> {
-    scene: &'a (&'a Mesh, Frame),
-    triangle: u32,
-}
-
-impl Boundable for Bounded<'_> {
-    fn aabb(&self) -> Aabb {
-        let (mesh, frame) = self.scene;
-        frame.boxed(&mesh.triangle(self.triangle as usize).vertices)
-    }
-}
-
-/// The triangles of a scene in the order of the tree's leaves, below a tree of boxes.
-pub(crate) struct Tree {
-    bvh: Bvh2,
+/// The triangles of a scene below a tree of boxes: what finds out which of them a ray may cross.
+pub struct Tree {
+    layout: Layout,
+    preset: Preset,
+    boxes: Boxes,
+    /// Triangles in the order of the tree's leaves.
+    triangles: Vec<u32>,
+    /// Their vertices.
     corners: Vec<[DVec3; 3]>,
     frame: Frame,
     radius: f64,
@@ -119,22 +47,106 @@ pub(crate) struct Met {
     pub position: DVec3,
 }
 
+/// Part of a line, from its origin to a length.
+struct Segment {
+    line: Line,
+    length: f64,
+}
+
+impl Segment {
+    /// Whether the triangle at a place among the leaves exists where it crosses this, if it does.
+    #[inline(always)]
+    fn crosses(
+        &self,
+        tree: &Tree,
+        place: usize,
+        exists: &impl Fn(u32, &Line, f64) -> bool,
+    ) -> bool {
+        match self.line.crossing(&tree.corners[place]) {
+            Some(distance) if distance > 0.0 && distance < self.length => {
+                exists(tree.triangles[place], &self.line, distance)
+            }
+            _ => false,
+        }
+    }
+}
+
+/// The search for what a ray meets first.
+struct Nearest<'a, E> {
+    tree: &'a Tree,
+    line: &'a Line,
+    exists: E,
+    /// Distance and triangle.
+    first: Option<(f64, u32)>,
+}
+
+impl<E: Fn(u32, &Line, f64) -> bool> Visit for Nearest<'_, E> {
+    #[inline(always)]
+    fn visit(&mut self, place: usize, reach: f32, _: bool) -> f32 {
+        let Some(distance) = self.line.crossing(&self.tree.corners[place]) else {
+            return reach;
+        };
+        let triangle = self.tree.triangles[place];
+        let nearer = self.first.is_none_or(|(least, latest)| {
+            distance < least || (distance <= least && triangle > latest)
+        });
+        if distance > 0.0 && nearer && (self.exists)(triangle, self.line, distance) {
+            self.first = Some((distance, triangle));
+            rounded_up(distance * self.tree.frame.scale)
+        } else {
+            reach
+        }
+    }
+}
+
+/// The search for anything on a segment.
+struct Any<'a, W, E> {
+    tree: &'a Tree,
+    segment: &'a Segment,
+    whole: W,
+    exists: E,
+    blocked: bool,
+}
+
+impl<W: Fn(u32) -> bool, E: Fn(u32, &Line, f64) -> bool> Visit for Any<'_, W, E> {
+    #[inline(always)]
+    fn visit(&mut self, place: usize, reach: f32, surely: bool) -> f32 {
+        self.blocked = surely && (self.whole)(self.tree.triangles[place])
+            || self.segment.crosses(self.tree, place, &self.exists);
+        if self.blocked { ENOUGH } else { reach }
+    }
+}
+
 impl Tree {
     /// A tree over all triangles of a mesh with finite vertices within `radius` of `centre`.
-    pub fn new(mesh: &Mesh, centre: DVec3, radius: f64, slack: f64) -> Self {
+    pub(crate) fn new(
+        mesh: &Mesh,
+        centre: DVec3,
+        radius: f64,
+        slack: f64,
+        layout: Layout,
+        preset: Preset,
+    ) -> Self {
         let frame = Frame::new(centre, radius, slack);
-        let bvh = built(mesh, frame);
-        let corners = bvh
-            .primitive_indices
-            .iter()
-            .map(|&triangle| mesh.triangle(triangle as usize).vertices)
-            .collect();
+        let (boxes, triangles) = Boxes::new(mesh, frame, layout, preset);
+        let vertices = |&triangle: &u32| mesh.triangle(triangle as usize).vertices;
         Self {
-            bvh,
-            corners,
+            layout,
+            preset,
+            corners: triangles.iter().map(vertices).collect(),
+            boxes,
+            triangles,
             frame,
             radius,
             slack,
+        }
+    }
+
+    /// The same on the vector unit that every machine has.
+    #[cfg(test)]
+    pub(crate) fn make_portable(&mut self) {
+        if let Boxes::Wide(_, unit) = &mut self.boxes {
+            *unit = lanes::Unit::portable();
         }
     }
 
@@ -144,7 +156,7 @@ impl Tree {
     /// So the origin's rounding to single precision stays below the padding, and the crossing's relative to the
     /// scene rather than to the distance.
     fn line(&self, origin: DVec3, direction: DVec3) -> Option<(Line, f64)> {
-        let sphere = self.radius * (1.0 + 1e-3);
+        let sphere = self.frame.sphere;
         let to_centre = self.frame.centre - origin;
         let mut line = Line::new(origin, direction, self.slack, 2.0 * self.radius);
         if to_centre.length_squared() <= sphere * sphere {
@@ -160,171 +172,158 @@ impl Tree {
         Some((line, moved))
     }
 
+    /// The segment between two points, the same both ways; `None` where nothing can lie on it.
+    fn segment(&self, from: DVec3, to: DVec3) -> Option<Segment> {
+        // One order for both ways, so that rounding is the same.
+        let (from, to) = if from.to_array() <= to.to_array() {
+            (from, to)
+        } else {
+            (to, from)
+        };
+        let length = from.distance(to);
+        if length <= 0.0 || length.is_nan() {
+            return None;
+        }
+        self.ray(from, (to - from) / length, length)
+    }
+
+    /// A ray up to a length; `None` where nothing can lie on it.
+    fn ray(&self, origin: DVec3, direction: DVec3, length: f64) -> Option<Segment> {
+        let (line, moved) = self.line(origin, direction)?;
+        let length = length - moved;
+        (length > 0.0).then_some(Segment { line, length })
+    }
+
     /// The first triangle in front of the origin that `exists`; of several at the same distance the latest.
-    pub fn nearest(
+    #[inline]
+    pub(crate) fn nearest(
         &self,
         origin: DVec3,
         direction: DVec3,
         exists: impl Fn(u32, &Line, f64) -> bool,
     ) -> Option<Met> {
         let (line, moved) = self.line(origin, direction)?;
-        let mut first: Option<(f64, u32)> = None;
-        self.bvh.ray_traverse(
-            self.frame.ray(&line, f64::INFINITY),
-            &mut RayHit::none(),
-            |_, leaf| {
-                let Some(distance) = line.crossing(&self.corners[leaf]) else {
-                    return f32::INFINITY;
-                };
-                let triangle = self.bvh.primitive_indices[leaf];
-                let nearer = first.is_none_or(|(least, latest)| {
-                    distance < least || (distance <= least && triangle > latest)
-                });
-                if distance > 0.0 && nearer && exists(triangle, &line, distance) {
-                    first = Some((distance, triangle));
-                    rounded_up(distance * self.frame.scale)
-                } else {
-                    f32::INFINITY
-                }
-            },
-        );
-        first.map(|(distance, triangle)| Met {
+        let mut search = Nearest {
+            tree: self,
+            line: &line,
+            exists,
+            first: None,
+        };
+        self.boxes
+            .walk(&self.frame, &line, f32::INFINITY, &mut search);
+        search.first.map(|(distance, triangle)| Met {
             triangle,
             distance: moved + distance,
             position: line.origin + distance * direction,
         })
     }
 
-    /// Whether any triangle that `exists` crosses the ray after the origin and before `length`.
-    pub fn blocked(
+    /// Whether any triangle that `exists` crosses the open segment between two points; one that is `whole` exists wherever it
+    /// is crossed.
+    #[inline]
+    pub(crate) fn between(
+        &self,
+        from: DVec3,
+        to: DVec3,
+        whole: impl Fn(u32) -> bool,
+        exists: impl Fn(u32, &Line, f64) -> bool,
+    ) -> bool {
+        self.segment(from, to)
+            .is_some_and(|segment| self.blocked(&segment, whole, exists))
+    }
+
+    /// Whether any triangle that `exists` crosses the ray after the origin; one that is `whole` exists wherever it is
+    /// crossed.
+    #[inline]
+    pub(crate) fn ahead(
         &self,
         origin: DVec3,
         direction: DVec3,
-        length: f64,
+        whole: impl Fn(u32) -> bool,
         exists: impl Fn(u32, &Line, f64) -> bool,
     ) -> bool {
-        let Some((line, moved)) = self.line(origin, direction) else {
-            return false;
-        };
-        let length = length - moved;
-        if length <= 0.0 {
-            return false;
-        }
-        let missed = self
-            .bvh
-            .ray_traverse_miss(self.frame.ray(&line, length), |_, leaf| {
-                // Any return below the ray's end stops the search.
-                match line.crossing(&self.corners[leaf]) {
-                    Some(distance)
-                        if distance > 0.0
-                            && distance < length
-                            && exists(self.bvh.primitive_indices[leaf], &line, distance) =>
-                    {
-                        0.0
-                    }
-                    _ => f32::INFINITY,
-                }
-            });
-        !missed
+        self.ray(origin, direction, f64::INFINITY)
+            .is_some_and(|ray| self.blocked(&ray, whole, exists))
     }
 
-    /// Visits every triangle whose box comes within `margin` (in m) of the box around `corners`.
-    pub fn near(&self, corners: &[DVec3], margin: f64, mut visit: impl FnMut(u32)) {
+    #[inline]
+    fn blocked(
+        &self,
+        segment: &Segment,
+        whole: impl Fn(u32) -> bool,
+        exists: impl Fn(u32, &Line, f64) -> bool,
+    ) -> bool {
+        let reach = rounded_up(segment.length * self.frame.scale);
+        let mut search = Any {
+            tree: self,
+            segment,
+            whole,
+            exists,
+            blocked: false,
+        };
+        self.boxes
+            .walk_to_any(&self.frame, &segment.line, reach, &mut search);
+        search.blocked
+    }
+
+    /// Sets for each target whether it and a point lie in front of each other with nothing that `exists` between them.
+    ///
+    /// A triangle that is `whole` exists wherever it is crossed.
+    pub(crate) fn seen(
+        &self,
+        question: &Question,
+        seen: &mut [bool],
+        whole: impl Fn(u32) -> bool,
+        exists: impl Fn(u32, &Line, f64) -> bool,
+    ) {
+        let from = question.from;
+        let single = |to| !self.between(from, to, &whole, &exists);
+        let sphere = self.frame.sphere;
+        match &self.boxes {
+            Boxes::Wide(wide, unit)
+                if (from - self.frame.centre).length_squared() <= sphere * sphere =>
+            {
+                unit.run(Sight {
+                    wide,
+                    frame: &self.frame,
+                    question,
+                    seen,
+                    single,
+                    between: |to, place: usize, surely| {
+                        surely && whole(self.triangles[place])
+                            || self
+                                .segment(from, to)
+                                .is_some_and(|segment| segment.crosses(self, place, &exists))
+                    },
+                });
+            }
+            _ => question.each_before(|target, to| seen[target] = single(to)),
+        }
+    }
+
+    /// Whether every triangle `passes` that lies in boxes which `enters`, given two corners of a box in m, lets in.
+    pub(crate) fn all(
+        &self,
+        enters: impl Fn(DVec3, DVec3) -> bool,
+        passes: impl Fn(u32) -> bool,
+    ) -> bool {
+        let Frame { centre, scale, .. } = self.frame;
+        let world = |corner: Vec3A| corner.as_dvec3() / scale + centre;
+        self.boxes.all(
+            |bounds| enters(world(bounds.min), world(bounds.max)),
+            |place| passes(self.triangles[place]),
+        )
+    }
+
+    /// Visits every triangle whose box comes within `margin` (in m) of the box around `corners`, and some more.
+    pub(crate) fn near(&self, corners: &[DVec3], margin: f64, mut visit: impl FnMut(u32)) {
         let around = self.frame.boxed(corners);
         let margin = Vec3A::splat(rounded_up(margin * self.frame.scale));
         let around = Aabb::new(around.min - margin, around.max + margin);
-        self.bvh.aabb_traverse(around, |bvh, node| {
-            let node = &bvh.nodes[node as usize];
-            let leaves = node.first_index as usize..(node.first_index + node.prim_count) as usize;
-            for &triangle in &bvh.primitive_indices[leaves] {
-                visit(triangle);
-            }
-            true
-        });
+        self.boxes
+            .near(&around, |place| visit(self.triangles[place]));
     }
 }
 
-impl Tree {
-    /// Whether every triangle `passes` that lies in boxes which `enters`, given two corners of a box in m, lets in.
-    pub fn all(&self, enters: impl Fn(DVec3, DVec3) -> bool, passes: impl Fn(u32) -> bool) -> bool {
-        let Frame { centre, scale, .. } = self.frame;
-        let world = |corner: Vec3A| corner.as_dvec3() / scale + centre;
-        let mut open = vec![0];
-        while let Some(index) = open.pop() {
-            let Some(node) = self.bvh.nodes.get(index) else {
-                continue;
-            };
-            let bounds = node.aabb();
-            if !enters(world(bounds.min), world(bounds.max)) {
-                continue;
-            }
-            let first = node.first_index as usize;
-            if node.is_leaf() {
-                let leaves = first..first + node.prim_count as usize;
-                if !self.bvh.primitive_indices[leaves]
-                    .iter()
-                    .all(|&t| passes(t))
-                {
-                    return false;
-                }
-            } else {
-                open.extend([first, first + 1]);
-            }
-        }
-        true
-    }
-}
-
-/// The preset `medium`: better traversal than the fast ones, and the slow ones gain little more.
-fn built(mesh: &Mesh, frame: Frame) -> Bvh2 {
-    let preset = BvhBuildParams::medium_build();
-    let scene = (mesh, frame);
-    let indices: Vec<u32> = (0..).take(mesh.len()).collect();
-    let boxes: Vec<Bounded> = indices
-        .iter()
-        .map(|&triangle| Bounded {
-            scene: &scene,
-            triangle,
-        })
-        .collect();
-    let mut bvh = PlocBuilder::new().build(
-        preset.ploc_search_distance,
-        &boxes,
-        indices,
-        preset.sort_precision,
-        preset.search_depth_threshold,
-    );
-    drop(boxes);
-    let mut optimizer = ReinsertionOptimizer::default();
-    optimizer.run(&mut bvh, preset.reinsertion_batch_ratio, None);
-    collapse(
-        &mut bvh,
-        preset.max_prims_per_leaf,
-        preset.collapse_traversal_cost,
-    );
-    let ratio =
-        preset.reinsertion_batch_ratio * preset.post_collapse_reinsertion_batch_ratio_multiplier;
-    optimizer.run(&mut bvh, ratio, None);
-    bvh.parents = Vec::new();
-    bvh.nodes.shrink_to_fit();
-    // The traversal's stack has this fixed size, and reinsertion may have deepened the tree.
-    bvh.max_depth = bvh.max_depth.max(depth(&bvh));
-    bvh
-}
-
-/// Number of levels of a tree.
-fn depth(bvh: &Bvh2) -> usize {
-    let mut deepest = 0;
-    let mut open = vec![(0, 1)];
-    while let Some((index, level)) = open.pop() {
-        let Some(node) = bvh.nodes.get(index) else {
-            continue;
-        };
-        deepest = deepest.max(level);
-        if !node.is_leaf() {
-            let first = node.first_index as usize;
-            open.extend([(first, level + 1), (first + 1, level + 1)]);
-        }
-    }
-    deepest
-}
+#[cfg(test)]
+mod tests;

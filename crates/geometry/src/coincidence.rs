@@ -38,6 +38,8 @@ pub(crate) struct Coverings {
     covering: Vec<u32>,
     /// One bit a triangle: whether it is covered at all. Empty where nothing is.
     covered: Vec<u64>,
+    /// Covered triangles before each word of these bits.
+    before: Vec<u32>,
 }
 
 /// A triangle that others cover in part.
@@ -102,6 +104,15 @@ impl Coverings {
                 most: corners().fold(DVec3::NEG_INFINITY, DVec3::max) + tolerance,
             });
         }
+        coverings.before = coverings
+            .covered
+            .iter()
+            .scan(0, |sum, bits| {
+                let before = *sum;
+                *sum += bits.count_ones();
+                Some(before)
+            })
+            .collect();
         coverings
     }
 
@@ -117,10 +128,10 @@ impl Coverings {
         if !self.any(triangle) {
             return None;
         }
-        let found = self
-            .hidden
-            .binary_search_by_key(&triangle, |hidden| hidden.triangle);
-        found.ok().map(|index| &self.hidden[index])
+        let (word, bit) = (triangle as usize / 64, triangle % 64);
+        let below = self.covered[word] & !(u64::MAX << bit);
+        self.hidden
+            .get((self.before[word] + below.count_ones()) as usize)
     }
 
     /// The later triangles that cover part of this one, the latest first.

@@ -47,7 +47,7 @@ impl Line {
     /// Where edges meet without sharing their ends (one long edge against several short ones), rounding opens
     /// cracks of some 2⁻⁵² of the scene: a line that passes the triangle within `slack` of an edge counts as
     /// crossing it where it comes nearest to that edge.
-    #[inline]
+    #[inline(always)]
     pub fn crossing(&self, triangle: &[DVec3; 3]) -> Option<f64> {
         let (p, q, r) = (
             triangle[0] - self.origin,

@@ -38,6 +38,7 @@ mod error;
 mod facets;
 mod holes;
 mod mesh;
+mod planes;
 mod polygon;
 mod pyramid;
 mod surfaces;
@@ -46,6 +47,7 @@ mod testing;
 mod triangle;
 mod weld;
 
+pub use bvh::{Layout, Preset, Targets, Tree, TreeFacts};
 pub use clean::Cleaned;
 pub use coincidence::Coincidence;
 pub use error::Error;

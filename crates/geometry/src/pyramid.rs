@@ -86,7 +86,7 @@ impl Surfaces {
             return false;
         };
         let (slack, tolerance) = (self.slack(), self.tolerance());
-        self.tree().all(
+        self.boxes().all(
             |least, most| !pyramid.misses_box(least, most),
             |triangle| pyramid.misses(&self.triangle(triangle).vertices, slack, tolerance),
         )

@@ -1,9 +1,10 @@
 //! What a ray meets first, and what sees what.
 
-use crate::bvh::Tree;
+use crate::bvh::{Layout, Preset, Question, Targets, Tree};
 use crate::clean::{self, Cleaned};
 use crate::coincidence::{self, Coincidence, Coverings};
 use crate::crossing::Line;
+use crate::planes::Planes;
 use crate::{Error, Mesh, Triangle};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -17,6 +18,7 @@ pub struct Surfaces {
     mesh: Mesh,
     normals: Vec<DVec3>,
     tree: Tree,
+    planes: Planes,
     centre: DVec3,
     radius: f64,
     coverings: Coverings,
@@ -57,12 +59,20 @@ impl Surfaces {
         let cleaned = waste.counted(&mesh);
         waste.remove_from(&mut mesh);
         drop(waste);
-        let tree = Tree::new(&mesh, centre, radius, slack);
+        let tree = Tree::new(
+            &mesh,
+            centre,
+            radius,
+            slack,
+            Layout::default(),
+            Preset::default(),
+        );
         let coverings = Coverings::of(&mesh, &tree, tolerance(centre, radius));
         coverings.add_to(&mesh, &mut hidden);
         let normals = (0..mesh.len()).map(|index| mesh.triangle(index).normal());
         Ok(Self {
             normals: normals.collect(),
+            planes: Planes::of(&mesh, slack),
             mesh,
             tree,
             centre,
@@ -71,6 +81,37 @@ impl Surfaces {
             coincidences: coincidence::list(hidden),
             cleaned,
         })
+    }
+
+    /// Another tree of boxes over the same surfaces.
+    #[must_use]
+    pub fn tree(&self, layout: Layout, preset: Preset) -> Tree {
+        let slack = clean::slack(self.centre, self.radius);
+        Tree::new(&self.mesh, self.centre, self.radius, slack, layout, preset)
+    }
+
+    /// Puts one of [`tree`](Self::tree) in the place of the present one, which is returned: the answers stay the same to
+    /// the last bit, their speed does not.
+    pub fn exchange(&mut self, tree: Tree) -> Tree {
+        std::mem::replace(&mut self.tree, tree)
+    }
+
+    /// The same answers from the vector unit that every machine has.
+    #[cfg(test)]
+    pub(crate) fn make_portable(&mut self) {
+        self.tree.make_portable();
+    }
+
+    /// See [`Planes::sides`].
+    #[cfg(test)]
+    pub(crate) fn planes_sides(&self, point: DVec3) -> Option<u32> {
+        self.planes.sides(point)
+    }
+
+    /// Puts other planes in the place of those known.
+    #[cfg(test)]
+    pub(crate) fn exchange_planes(&mut self, planes: Planes) -> Planes {
+        std::mem::replace(&mut self.planes, planes)
     }
 
     /// The first surface that a ray meets, at a distance above 0; of several at one distance the latest.
@@ -96,33 +137,71 @@ impl Surfaces {
     /// Exactly symmetric. Callers move ends that lie on a surface off it by [`offset`](Self::offset).
     #[must_use]
     pub fn visible(&self, from: DVec3, to: DVec3) -> bool {
-        // One order for both ways, so that rounding is the same.
-        let (from, to) = if from.to_array() <= to.to_array() {
-            (from, to)
-        } else {
-            (to, from)
-        };
-        let length = from.distance(to);
-        if length <= 0.0 || length.is_nan() {
+        // Points on one side of every plane have nothing between them: all of an empty convex room.
+        let sides = self.planes.sides(from);
+        if sides.is_some() && sides == self.planes.sides(to) {
             return true;
         }
-        let direction = (to - from) / length;
-        !self
-            .tree
-            .blocked(from, direction, length, |triangle, line, distance| {
-                self.exists(triangle, line, distance)
-            })
+        !self.tree.between(
+            from,
+            to,
+            |triangle| self.whole(triangle),
+            |triangle, line, distance| self.exists(triangle, line, distance),
+        )
+    }
+
+    /// Points (in m) with normals, made ready for [`visible_from`](Self::visible_from); one whose normal is zero is seen
+    /// from nowhere.
+    ///
+    /// # Panics
+    /// If there are more than 2³² of them.
+    #[must_use]
+    pub fn targets(&self, points: &[(DVec3, DVec3)]) -> Targets {
+        Targets::new(points, |point| self.planes.sides(point))
+    }
+
+    /// Which targets of these surfaces a point sees: `seen` gets one entry a target, true where it and the point lie in
+    /// front of each other's surfaces and [`visible`](Self::visible) holds.
+    ///
+    /// `from` in m, `normal` of any length. Faster than asking one by one, the more so the closer together targets are.
+    pub fn visible_from(
+        &self,
+        from: DVec3,
+        normal: DVec3,
+        targets: &Targets,
+        seen: &mut Vec<bool>,
+    ) {
+        seen.clear();
+        seen.resize(targets.len(), false);
+        let question = Question {
+            from,
+            normal,
+            sides: self.planes.sides(from),
+            targets,
+        };
+        self.tree.seen(
+            &question,
+            seen,
+            |triangle| self.whole(triangle),
+            |triangle, line, distance| self.exists(triangle, line, distance),
+        );
     }
 
     /// Whether a ray meets no surface up to infinity. `from` in m, `direction` a unit vector.
     #[must_use]
     pub fn escapes(&self, from: DVec3, direction: DVec3) -> bool {
-        !self.tree.blocked(
+        !self.tree.ahead(
             from,
             direction,
-            f64::INFINITY,
+            |triangle| self.whole(triangle),
             |triangle, line, distance| self.exists(triangle, line, distance),
         )
+    }
+
+    /// Whether no later triangle covers any of this one.
+    #[inline]
+    fn whole(&self, triangle: u32) -> bool {
+        !self.coverings.any(triangle)
     }
 
     /// Whether a triangle is there for a line that crosses it at a distance: not where the line crosses one that covers
@@ -131,7 +210,7 @@ impl Surfaces {
     /// The same line asks both, so none slips through between the edge of one and the rim of the other.
     #[inline]
     fn exists(&self, triangle: u32, line: &Line, distance: f64) -> bool {
-        !self.coverings.any(triangle)
+        self.whole(triangle)
             || !self
                 .coverings
                 .over_point(triangle, line.origin + distance * line.direction)
@@ -176,8 +255,8 @@ impl Surfaces {
         clean::slack(self.centre, self.radius)
     }
 
-    /// The tree of boxes.
-    pub(crate) fn tree(&self) -> &Tree {
+    /// The tree of boxes in use.
+    pub(crate) fn boxes(&self) -> &Tree {
         &self.tree
     }
 

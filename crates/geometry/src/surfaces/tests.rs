@@ -337,10 +337,15 @@ fn the_search_for_an_obstacle_stops_at_the_first() {
     let stack = surfaces(&sheets);
     let asked = std::cell::Cell::new(0);
     let from = DVec3::new(0.3, 0.6, -1.0);
-    let blocked = stack.tree.blocked(from, DVec3::Z, 1000.0, |_, _, _| {
-        asked.set(asked.get() + 1);
-        true
-    });
+    let blocked = stack.tree.ahead(
+        from,
+        DVec3::Z,
+        |_| false,
+        |_, _, _| {
+            asked.set(asked.get() + 1);
+            true
+        },
+    );
     assert!(blocked);
     assert_eq!(asked.get(), 1);
 }
