@@ -67,14 +67,15 @@ fn a_coated_sphere_that_emits_has_its_exact_answer() {
         exitance = 1
         {sensors}
         [run]
-        samples = 16384"
+        samples = 65536"
     ));
+    // Walks from the wall are common to all points, so the error of the mean is up to the mean of the errors.
     let mean = |of: &dyn Fn(&Reading) -> (f64, f64)| {
         let parts = readings.iter().map(of);
-        let (sum, squares) = parts.fold((0.0, 0.0), |(sum, squares), (value, error)| {
-            (sum + value, squares + error * error)
+        let (sum, errors) = parts.fold((0.0, 0.0), |(sum, errors), (value, error)| {
+            (sum + value, errors + error)
         });
-        (sum / count as f64, squares.sqrt() / count as f64)
+        (sum / count as f64, errors / count as f64)
     };
     let (scale, entered) = kernel(rho, n);
     let scattered = scale / (1.0 - scale * entered);

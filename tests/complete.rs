@@ -407,7 +407,7 @@ fn mirrors_that_hide_one_another_make_no_image_where_they_do() {
         (v(-0.2, -0.3, 1.2), v(-0.5, 0.3, 0.8)),
     ]);
     let source = point(v(-0.1, 0.1, 0.5));
-    assert_images("gold", &flats, &[source], &eyes, 7, 131_072, 3e-2);
+    assert_images("gold", &flats, &[source], &eyes, 7, 524_288, 3e-2);
 }
 
 /// Parallel mirrors: images without end, drawn as chains to the third and as images beyond.
@@ -655,8 +655,8 @@ fn a_point_source_is_a_tiny_ball() {
             samples = {samples}"
         ))
     };
-    let balls = by(&ball, "gather", 524_288);
-    for (one, other) in by(source, "auto", 65_536).iter().zip(balls) {
+    let balls = by(&ball, "gather", 1_048_576);
+    for (one, other) in by(source, "auto", 262_144).iter().zip(balls) {
         for c in 0..3 {
             // The ball covers less than a thousandth of what is seen, hides as much, and is a polyhedron.
             let model = 1.5e-3 * other.stokes[0];

@@ -187,7 +187,7 @@ fn a_point_source_before_and_between_two_panes_has_all_its_images() {
     ]);
     let flats = [sheet(2.0, pane(4.0, 1.0)), sheet(1.0, pane(3.0, 1.0))];
     for source in [point(v(0.1, -0.2, 3.0)), point(v(0.1, -0.2, 1.6))] {
-        assert_images("panes", &flats, &[source], &eyes, 60, 65_536, 2e-2);
+        assert_images("panes", &flats, &[source], &eyes, 60, 524_288, 2e-2);
     }
 }
 
@@ -245,7 +245,7 @@ const SHEET: &str = "
 #[test]
 fn a_clear_pane_in_a_furnace_changes_nothing() {
     for (rho, n) in [(0.5, 1.5), (0.8, 4.0)] {
-        for (estimator, ceiling) in [("auto", 1e-2), ("gather", 1e-2)] {
+        for (estimator, samples, ceiling) in [("auto", 262_144, 1e-2), ("gather", 32_768, 1e-2)] {
             let readings = measured(&format!(
                 "{BOX}{SHEET}
                 [material.wall]
@@ -257,7 +257,7 @@ fn a_clear_pane_in_a_furnace_changes_nothing() {
                 [run]
                 estimator = '{estimator}'
                 representation = 'full'
-                samples = 32768"
+                samples = {samples}"
             ));
             for (i, reading) in readings.iter().enumerate() {
                 let share = if i < 4 {

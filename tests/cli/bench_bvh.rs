@@ -104,7 +104,7 @@ fn what_cannot_be_measured_is_told() {
     let files: [(&str, &[u8]); 2] = [("empty.obj", empty.as_bytes()), ("room.stl", b"solid")];
     let folder = Folder::new(ROOM.as_bytes(), &files);
     let cases: [(&[&str], &[&str]); 5] = [
-        (&["absent.glb"], &["absent.glb", "no such file"]),
+        (&["absent.glb"], &["absent.glb", "No such file"]),
         (
             &["room.stl"],
             &["room.stl", ".toml", ".gltf, .glb, .obj", "found .stl"],

@@ -40,7 +40,7 @@ const LONGEST_CHAIN: u32 = 10_000;
 
 /// Tries after which, and after twice as many each time, half of the images are tried no further and the tries of the others
 /// count twice.
-const TRIES: u64 = 16;
+const TRIES: u64 = 64;
 
 /// Distance within which two images are one, as a share of the scene's radius.
 const APART: f64 = 1e-6;

@@ -22,6 +22,8 @@ pub(crate) struct Readings<'a> {
     pub exact: Vec<[f64; 4]>,
     /// One entry a sensor.
     pub unmet: Vec<Unmet>,
+    /// Whether light is counted in cells, not joined to the sensors.
+    pub counted: bool,
     /// Whether sensors tell each other what they have met.
     pub shared: bool,
     /// Which of so many variants is read.
@@ -154,7 +156,8 @@ impl<'a> Readings<'a> {
             .collect();
         let mean = free.iter().map(|e| e.mean).sum::<f64>() / free.len().max(1) as f64;
         if mean <= 0.0 {
-            return 0.0;
+            // What is only counted comes late.
+            return if self.counted { f64::INFINITY } else { 0.0 };
         }
         free.iter()
             .filter(|e| e.standard_error > 0.0)

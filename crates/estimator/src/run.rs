@@ -215,6 +215,7 @@ fn run_with<const N: usize>(
         allocation: &allocation,
         exact: exact[variant].iter().map(padded).collect(),
         unmet: unmet.clone(),
+        counted: cells.is_some(),
         shared: techniques.mirrored,
         variant: (variant, scenes.len()),
     };
