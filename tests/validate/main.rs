@@ -60,9 +60,12 @@ fn table(title: &str, text: &str, rows: &[Row]) {
 }
 
 fn main() {
-    // The part that takes longest can be had alone.
-    if std::env::args().nth(1).as_deref() == Some("stopping") {
-        return stopping::print();
+    // The parts that take longest can be had alone.
+    match std::env::args().nth(1).as_deref() {
+        Some("intervals") => return coverage::print(),
+        Some("stopping") => return stopping::print(),
+        Some("studies") => return studies::print(),
+        _ => {}
     }
     println!("# Validation\n");
     println!("Every exact answer that malus is held against, and what it gets.");
