@@ -131,8 +131,8 @@ impl Allocation {
         if let Some(shared) = cheapest(&needs, cost_launched, cost_gathered) {
             for (&sensor, need) in free.iter().zip(&needs) {
                 let parts = f64::from(PARTS) * need.gathered / (shared - need.launched);
-                // A share that is no number asks for nothing.
-                shares.parts[sensor] = parts.clamp(1.0, f64::from(MOST)).round() as u32;
+                // A share that is no number asks for nothing, and no share is nothing.
+                shares.parts[sensor] = (parts.round() as u32).clamp(1, MOST);
             }
         }
         shares

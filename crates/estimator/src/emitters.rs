@@ -148,30 +148,27 @@ impl<'a> Emitters<'a> {
         let mut triangles = Vec::new();
         let mut cumulated = Vec::new();
         let mut total = 0.0;
+        // Those that a patch may be made of.
+        let mut even = vec![false; surfaces.len()];
         for triangle in 0..surfaces.len() as u32 {
-            let emission = &scene.materials[surfaces.surface(triangle) as usize].emission;
-            if let Some(emission) = emission
-                && surfaces.exposed_area(triangle) > 0.0
-            {
-                total += emission.exitance * surfaces.triangle(triangle).area();
+            let material = &scene.materials[surfaces.surface(triangle) as usize];
+            let Some(emission) = &material.emission else {
+                continue;
+            };
+            let exposed = surfaces.exposed_area(triangle);
+            if exposed > 0.0 {
+                let area = surfaces.triangle(triangle).area();
+                total += emission.exitance * area;
                 triangles.push(triangle);
                 cumulated.push(total);
+                even[triangle as usize] = exposed >= area && emitted_state(material).is_none();
             }
         }
         for source in &scene.sources {
             total += source_flux(source, surfaces);
             cumulated.push(total);
         }
-        let even = |triangle: u32| {
-            let own = surfaces.triangle(triangle).area();
-            let material = &scene.materials[surfaces.surface(triangle) as usize];
-            emitted_state(material).is_none() && surfaces.exposed_area(triangle) >= own
-        };
-        let mut emits = vec![false; surfaces.len()];
-        for &triangle in &triangles {
-            emits[triangle as usize] = even(triangle);
-        }
-        let patches = Facets::new(surfaces, |t| emits[t as usize], 0.0, MOST_PATCHES);
+        let patches = Facets::new(surfaces, |t| even[t as usize], 0.0, MOST_PATCHES);
         Self {
             surfaces,
             materials: &scene.materials,

@@ -291,7 +291,9 @@ impl<'a> Walk<'a> {
         self.depth += 1;
         let (hit, meeting) = self.medium.meet(self.origin, self.direction)?;
         let emission = self.emission_share(&hit, &meeting);
-        let density = self.aim.map_or(0.0, |aim| {
+        // Aiming is for the first mirror alone.
+        let aim = self.aim.filter(|_| self.depth == 1);
+        let density = aim.map_or(0.0, |aim| {
             aim.density(hit.triangle, hit.distance, meeting.angle.0)
         });
         if let (Role::Aimed(aimed), 1) = (&mut self.role, self.depth) {
