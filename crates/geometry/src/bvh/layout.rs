@@ -72,6 +72,10 @@ pub(super) trait Visit {
     fn visit(&mut self, place: usize, reach: f32, surely: bool) -> f32;
 }
 
+/// Least reach of a ray through `obvhs`'s eight-wide tree, in the frame's units: that asks no box before a distance of
+/// 1e-4, so within a shorter reach it would find nothing.
+const SHORTEST: f32 = 2e-4;
+
 /// What [`Visit::visit`] returns to end the search.
 pub(super) const ENOUGH: f32 = -1.0;
 
@@ -123,8 +127,10 @@ impl Boxes {
                 });
             }
             Self::Cwbvh(tree) => {
-                tree.ray_traverse(ray(), &mut hit, |ray, place| {
-                    search.visit(place, ray.tmax, false)
+                let mut ray = ray();
+                ray.tmax = reach.max(SHORTEST);
+                tree.ray_traverse(ray, &mut hit, |ray, place| {
+                    search.visit(place, ray.tmax, false).max(SHORTEST)
                 });
             }
             Self::List(count) => {
@@ -152,7 +158,9 @@ impl Boxes {
                 tree.ray_traverse_miss(ray(), |ray, place| search.visit(place, ray.tmax, false));
             }
             Self::Cwbvh(tree) => {
-                tree.ray_traverse_miss(ray(), |ray, place| search.visit(place, ray.tmax, false));
+                let mut ray = ray();
+                ray.tmax = reach.max(SHORTEST);
+                tree.ray_traverse_miss(ray, |ray, place| search.visit(place, ray.tmax, false));
             }
             Self::List(count) => {
                 (0..*count).any(|place| search.visit(place, reach, false) <= ENOUGH);
