@@ -43,9 +43,12 @@ const JOIN: f64 = 0.2;
 const LOOK: f64 = 4.0;
 
 /// Walks from each sensor, relative to those from the emitters, as the pilot of a run has found them.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Allocation {
     parts: Vec<u32>,
+    /// Relative variance at the worst sensor that one walk from the emitters, with its share of walks from the sensors, is
+    /// expected to leave; infinite where no pilot has told.
+    variance: f64,
 }
 
 impl Allocation {
@@ -53,7 +56,13 @@ impl Allocation {
     pub(crate) fn even(sensors: usize) -> Self {
         Self {
             parts: vec![PARTS; sensors],
+            variance: f64::INFINITY,
         }
+    }
+
+    /// Largest relative error that so many walks from the emitters in all are expected to leave.
+    pub(crate) fn expected_error(&self, launched: u64) -> f64 {
+        (self.variance / launched as f64).sqrt()
     }
 
     /// Walks that a sensor has taken in a replica once so many were taken from the emitters.
@@ -100,6 +109,7 @@ impl Allocation {
             aims,
             tried: Self {
                 parts: vec![TRIED; sensors],
+                variance: f64::INFINITY,
             },
         };
         let rounds: Vec<Round> = (0..ROUNDS)
@@ -134,6 +144,10 @@ impl Allocation {
                 // A share that is no number asks for nothing, and no share is nothing.
                 shares.parts[sensor] = (parts.round() as u32).clamp(1, MOST);
             }
+            let left = |(&sensor, need): (&usize, &Need)| {
+                need.launched + need.gathered * shares.launched(sensor)
+            };
+            shares.variance = free.iter().zip(&needs).map(left).fold(0.0, f64::max);
         }
         shares
     }
@@ -276,6 +290,7 @@ mod tests {
     fn walks_of_a_share_are_rounded_up_so_that_every_sensor_has_one() {
         let shares = Allocation {
             parts: vec![1, 16, 64, 512],
+            variance: 1.0,
         };
         let walks = |launched| [0, 1, 2, 3].map(|sensor| shares.walks(sensor, launched));
         assert_eq!(walks(0), [0; 4]);

@@ -22,16 +22,46 @@ use crate::variation::{Variation, covering};
 use malus_optics::Representation;
 use malus_scene::{Estimator, Model, Scene, Settings};
 
-/// Walks a replica before the first checkpoint: fewer would not tell an error from luck.
-const FIRST_CHECKPOINT: u64 = 16;
+/// When a run is judged, by walks a replica.
+#[derive(Debug, Clone, Copy)]
+struct Checkpoints {
+    first: u64,
+}
 
-/// The first checkpoint after `taken` walks a replica: four to the octave.
-fn next_checkpoint(taken: u64) -> u64 {
-    if taken < FIRST_CHECKPOINT {
-        return FIRST_CHECKPOINT;
+impl Checkpoints {
+    /// Walks a replica of which the spread tells the error well enough to go on because of it.
+    const TELLING: u64 = 16;
+
+    /// Walks a replica of which the spread tells the error at all.
+    const FEWEST: u64 = 4;
+
+    /// By how much less the error has to be expected than it may be, so that hardly a run goes on.
+    const MARGIN: f64 = 2.5;
+
+    /// With few walks luck makes an error look small or large together with the mean: a run that stopped because of it would
+    /// be biased. So what the pilot has found decides how early a run is judged for the first time, and few walks are enough
+    /// where it makes little doubt that they are.
+    fn new(goal: Option<f64>, expected_error: impl Fn(u64) -> f64) -> Self {
+        let mut first = Self::FEWEST;
+        while first < Self::TELLING
+            && goal.is_none_or(|goal| Self::MARGIN * expected_error(first) > goal)
+        {
+            first *= 2;
+        }
+        Self { first }
     }
-    let spacing = 1 << (taken.ilog2() - 2);
-    (taken / spacing + 1) * spacing
+
+    /// The first checkpoint after `taken` walks a replica: four to the octave, as soon as they tell enough.
+    fn after(self, taken: u64) -> u64 {
+        if taken < self.first {
+            return self.first;
+        }
+        if taken < Self::TELLING {
+            return Self::TELLING;
+        }
+        let spacing = 1 << (taken.ilog2() - 2);
+        (taken / spacing + 1) * spacing
+    }
 }
 
 /// Evaluates a scene.
@@ -221,19 +251,22 @@ fn run_with<const N: usize>(
     };
     let first = readings(0);
 
+    let checkpoints = Checkpoints::new(settings.relative_error, |walks| {
+        allocation.expected_error(walks * u64::from(REPLICAS))
+    });
     engine.fit(&mut state.walks)?;
     let mut taken = state.walks.points();
     let mut reached = None;
     let stop = loop {
         // A run that goes on is judged where it was set aside, too: it may have been right before its end.
         if taken > 0 {
-            let checkpoint = taken == next_checkpoint(taken - 1) || Some(taken) == limit;
+            let checkpoint = taken == checkpoints.after(taken - 1) || Some(taken) == limit;
             if checkpoint {
                 reached = Some(first.relative_error(&state.walks));
             }
             let progress = Progress {
                 samples: taken * u64::from(REPLICAS),
-                next_checkpoint: next_checkpoint(taken).min(limit.unwrap_or(u64::MAX))
+                next_checkpoint: checkpoints.after(taken).min(limit.unwrap_or(u64::MAX))
                     * u64::from(REPLICAS),
                 samples_limit: limit.map(|n| n * u64::from(REPLICAS)),
                 checkpoint,
@@ -258,7 +291,7 @@ fn run_with<const N: usize>(
                 }
             }
         }
-        let checkpoint = next_checkpoint(taken).min(limit.unwrap_or(u64::MAX));
+        let checkpoint = checkpoints.after(taken).min(limit.unwrap_or(u64::MAX));
         taken = checkpoint.min(taken + engine.step());
         engine.advance(&mut state.walks, taken);
     };
@@ -354,14 +387,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn checkpoints_stand_four_to_the_octave() {
-        let mut taken = 0;
-        let checkpoints: Vec<u64> = (0..10)
-            .map(|_| {
-                taken = next_checkpoint(taken);
+    fn checkpoints_stand_four_to_the_octave_and_one_before_them_where_little_is_asked() {
+        let first = |goal, expected: f64, count: usize| -> Vec<u64> {
+            let checkpoints = Checkpoints::new(goal, |walks| expected / (walks as f64).sqrt());
+            let mut taken = 0;
+            let mut next = || {
+                taken = checkpoints.after(taken);
                 taken
-            })
-            .collect();
-        assert_eq!(checkpoints, [16, 20, 24, 28, 32, 40, 48, 56, 64, 80]);
+            };
+            (0..count).map(|_| next()).collect()
+        };
+        let all = [16, 20, 24, 28, 32, 40, 48, 56, 64, 80];
+        assert_eq!(first(None, 1.0, 10), all);
+        assert_eq!(first(Some(0.3), 1.0, 10), all);
+        // Where less is expected to do, a run is judged once more, earlier.
+        assert_eq!(first(Some(1.5), 2.0, 3), [4, 16, 20]);
+        assert_eq!(first(Some(1.49), 2.0, 3), [8, 16, 20]);
     }
 }
