@@ -19,7 +19,23 @@ pub(crate) struct Odds {
     pub through: f64,
 }
 
+/// By how much a walk from a sensor is likelier to be mirrored where it first meets a surface.
+const SPLIT: f64 = 4.0;
+
 impl Odds {
+    /// Probability of being mirrored; `first` where a walk from a sensor meets its first surface, where it is that whatever
+    /// else happens.
+    ///
+    /// What a sensor sees in mirrors, walks from emitters cannot bring; a sensor that takes few walks of its own would
+    /// depend on the luck of one.
+    pub(crate) fn mirrored(self, first: bool) -> f64 {
+        if first {
+            (SPLIT * self.mirror).min(1.0)
+        } else {
+            self.mirror
+        }
+    }
+
     /// The same for a walk that passes mirrors and panes alone; `surely` where it is to be mirrored.
     pub(crate) fn of_mirrors(self, surely: bool) -> Self {
         if surely {

@@ -199,15 +199,23 @@ impl<'w> Way<'w> {
             walk.look(path);
             read(path, Part::Start);
             effort.rays += 1;
-            let mut more = true;
-            while more {
-                path.clear();
-                more = walk.advance(path);
+            path.clear();
+            loop {
+                let more = walk.advance(path);
                 read(path, Part::Onward);
                 // Each vertex costs the segment that led to it and one look at an emitter.
                 effort.rays += 2 * path.vertices.len() as u64;
+                path.clear();
+                if more {
+                    continue;
+                }
+                effort.truncated += u64::from(walk.truncated);
+                let Some(vertex) = walk.turn() else {
+                    break;
+                };
+                read(path, Part::Start);
+                path.vertices.push(vertex);
             }
-            effort.truncated += u64::from(walk.truncated);
         }
         effort
     }

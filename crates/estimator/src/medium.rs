@@ -201,6 +201,7 @@ impl<'a> Medium<'a> {
         let start = span / square.sqrt();
         let mut odds = 1.0;
         let (mut from, mut toward) = (viewer.point, start);
+        let before = steps.len();
         for &facet in chain {
             loop {
                 let (hit, meeting) = self.meet(from, toward)?;
@@ -208,7 +209,8 @@ impl<'a> Medium<'a> {
                 let own = meeting.facet == Some(facet);
                 let chances = meeting.odds(&mirror, &through);
                 let (matrix, chance) = if own {
-                    (mirror, chances.mirror)
+                    let first = viewer.sensor && steps.len() == before;
+                    (mirror, chances.mirrored(first))
                 } else {
                     (through, chances.through)
                 };
@@ -263,6 +265,7 @@ impl<'a> Medium<'a> {
         let mut chain = Vec::new();
         let (mut odds, mut drawn) = (1.0, 1.0);
         let (mut from, mut toward) = (viewer.point, start);
+        let before = steps.len();
         while chain.len() < mirrors {
             let (hit, meeting) = self.meet(from, toward)?;
             if hit.distance >= left {
@@ -282,7 +285,8 @@ impl<'a> Medium<'a> {
                 (through, chances.through)
             } else {
                 chain.push(meeting.facet?);
-                (mirror, chances.mirror)
+                let first = viewer.sensor && steps.len() == before;
+                (mirror, chances.mirrored(first))
             };
             if chance <= 0.0 || meeting.black() {
                 return None;

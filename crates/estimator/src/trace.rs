@@ -139,8 +139,16 @@ pub(crate) struct Walk<'a> {
     /// How walks are aimed at small mirrors from this sensor.
     aim: Option<&'a Aim<'a>>,
     role: Role<'a>,
+    /// Where a walk from a sensor was mirrored at its first vertex, which is followed when the rest of it has ended.
+    branch: Option<Branch>,
     /// True if the walk ended at [`LONGEST`].
     pub truncated: bool,
+}
+
+/// The mirror-like reflection of a walk from a sensor at its first vertex.
+struct Branch {
+    vertex: Vertex,
+    lookout: Lookout,
 }
 
 /// A walk from a sensor that is aimed at a small mirror, and takes the way of its reflection.
@@ -180,6 +188,7 @@ impl<'a> Walk<'a> {
             depth: 0,
             aim: None,
             role: Role::Launched(Launched::new(start)),
+            branch: None,
             truncated: false,
         }
     }
@@ -215,6 +224,7 @@ impl<'a> Walk<'a> {
             depth: 0,
             aim,
             role: Role::Looking(lookout),
+            branch: None,
             truncated: false,
         }
     }
@@ -243,6 +253,7 @@ impl<'a> Walk<'a> {
                 by_chance: cos / PI,
                 share: 0.0,
             }),
+            branch: None,
             truncated: false,
         })
     }
@@ -281,6 +292,17 @@ impl<'a> Walk<'a> {
             }
         }
         true
+    }
+
+    /// Turns to the reflection at the walk's first vertex, if there is one to be followed, and gives that vertex.
+    pub(crate) fn turn(&mut self) -> Option<Vertex> {
+        let Branch { vertex, lookout } = self.branch.take()?;
+        self.origin = vertex.position;
+        self.direction = vertex.onward;
+        self.depth = 1;
+        self.role = Role::Looking(lookout);
+        self.truncated = false;
+        Some(vertex)
     }
 
     fn next_vertex(&mut self, path: &mut Path<'a>) -> Option<Vertex> {
@@ -332,8 +354,28 @@ impl<'a> Walk<'a> {
         if odds.diffuse > 0.0 && meeting.cover.scatters() {
             self.join(path, &mut vertex, &meeting, odds.diffuse);
         }
-        let [lobe, u, v, _] = self.uniforms.at(self.depth, Purpose::Scatter);
+        let [lobe, u, v, split] = self.uniforms.at(self.depth, Purpose::Scatter);
         self.origin = vertex.position;
+        let mirrored = (self.direction + normal * (2.0 * meeting.angle.0)).normalize();
+        if let (Role::Looking(lookout), 1) = (&self.role, self.depth) {
+            let probability = odds.mirrored(true);
+            if split < probability {
+                let mut lookout = lookout.clone();
+                lookout.chain.reflect(meeting.facet, probability);
+                lookout.aimed(density);
+                let vertex = Vertex {
+                    onward: mirrored,
+                    matrix: mirror,
+                    emission: 0.0,
+                    connections: 0..0,
+                    event: Event::Mirror,
+                    probability,
+                    ..vertex
+                };
+                self.branch = Some(Branch { vertex, lookout });
+            }
+            odds.mirror = 0.0;
+        }
         if lobe < odds.diffuse {
             vertex.event = Event::Diffuse;
             vertex.probability = odds.diffuse;
@@ -363,16 +405,11 @@ impl<'a> Walk<'a> {
             vertex.event = Event::Mirror;
             vertex.probability = odds.mirror;
             vertex.matrix = mirror;
-            self.direction = (self.direction + normal * (2.0 * meeting.angle.0)).normalize();
+            self.direction = mirrored;
             match &mut self.role {
                 Role::Aimed(_) => {}
                 Role::Launched(launched) => launched.chain.reflect(meeting.facet, odds.mirror),
-                Role::Looking(lookout) => {
-                    lookout.chain.reflect(meeting.facet, odds.mirror);
-                    if self.depth == 1 {
-                        lookout.aimed(density);
-                    }
-                }
+                Role::Looking(lookout) => lookout.chain.reflect(meeting.facet, odds.mirror),
             }
         } else if lobe < odds.diffuse + odds.mirror + odds.through {
             vertex.event = Event::Through;
