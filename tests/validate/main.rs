@@ -1,6 +1,6 @@
-//! Writes `docs/validation.md`: every exact answer against what malus gets. Minutes of work, so it is run by hand:
+//! Writes `docs/validation.md`: every exact answer against what malus gets. An hour of work, so it is run by hand:
 //!
-//! `cargo run --release --example validate > docs/validation.md`, or its part on stopping alone with `-- stopping`.
+//! `cargo run --release --example validate > docs/validation.md`, or some of its parts alone: `-- answers stopping`.
 #![expect(
     clippy::unwrap_used,
     reason = "a document that cannot be made is to panic"
@@ -59,18 +59,36 @@ fn table(title: &str, text: &str, rows: &[Row]) {
     rows.iter().for_each(Row::print);
 }
 
+/// The parts of the document, in its order.
+const PARTS: [(&str, fn()); 6] = [
+    ("answers", answers),
+    ("figure", figure::print),
+    ("intervals", coverage::print),
+    ("stopping", stopping::print),
+    ("studies", studies::print),
+    ("baseline", baseline::print),
+];
+
 fn main() {
-    // The parts that take longest can be had alone.
-    match std::env::args().nth(1).as_deref() {
-        Some("intervals") => return coverage::print(),
-        Some("stopping") => return stopping::print(),
-        Some("studies") => return studies::print(),
-        _ => {}
+    let asked: Vec<String> = std::env::args().skip(1).collect();
+    let known = |name: &String| PARTS.iter().any(|part| part.0 == name);
+    if let Some(other) = asked.iter().find(|name| !known(name)) {
+        let names = PARTS.map(|part| part.0).join(", ");
+        eprintln!("error: no part is called {other:?}; there are {names}");
+        std::process::exit(2);
     }
+    for (name, print) in PARTS {
+        if asked.is_empty() || asked.iter().any(|it| it == name) {
+            print();
+        }
+    }
+}
+
+fn answers() {
     println!("# Validation\n");
     println!("Every exact answer that malus is held against, and what it gets.");
     println!(
-        "Made by `cargo run --release --example validate > docs/validation.md`; seeds are fixed, so all but the times of the last table come out the same everywhere."
+        "Made by `cargo run --release --example validate > docs/validation.md`, or in parts that are put together (`-- answers`, and so on); seeds are fixed, so all but the times of the last table come out the same everywhere."
     );
     println!(
         "z is the deviation in standard errors; where nothing is left to chance the relative deviation stands in its place."
@@ -91,9 +109,4 @@ fn main() {
         "Closed rooms whose walls emit, and cases in the spirit of CIE 171:2006.",
         &closed::rows(),
     );
-    figure::print();
-    coverage::print();
-    stopping::print();
-    studies::print();
-    baseline::print();
 }

@@ -6,13 +6,16 @@
 //! outlines leave, which has a closed form. Whether a surface is really there, and nothing before it, is for rays to
 //! tell once the chain is chosen.
 
-use crate::beam::Beam;
+mod images;
+mod view;
+
 use crate::cover::Cover;
-use crate::direction::{cosine_weighted, in_cone};
+use crate::direction::cosine_weighted;
 use crate::random::{Fresh, Uniforms};
 use glam::DVec3;
 use malus_geometry::{Facet, Facets, Surfaces};
 use std::f64::consts::PI;
+use view::{Ray, View};
 
 /// Flat mirrors that are looked into; light in others is met by chance.
 const MOST: usize = 64;
@@ -20,27 +23,14 @@ const MOST: usize = 64;
 /// Least area of such a mirror, as a share of that of the sphere about the scene.
 const LEAST: f64 = 1e-4;
 
-/// Share of all directions below which a beam is not followed any further.
-const NARROWEST: f64 = 1e-10;
-
 /// Chains of so many mirrors are all tested by rays, of longer ones as many as keeps the rays for one drawn constant.
 const TESTED: f64 = 6.0;
 
 /// Longest chain that is drawn by its beam.
 const LONGEST_BEAM: usize = 3;
 
-/// Radius of the cone of directions about an image, as a share of the scene's.
-const SPREAD: f64 = 0.5;
-
-/// Part of such a cone that leads to the image, or so: it only weighs techniques against each other.
-const TRIED: f64 = 0.4;
-
 /// Mirrors after which a ray is not followed any further.
 const LONGEST_CHAIN: u32 = 10_000;
-
-/// Tries after which, and after twice as many each time, half of the images are tried no further and the tries of the others
-/// count twice.
-const TRIES: u64 = 64;
 
 /// Distance within which two images are one, as a share of the scene's radius.
 const APART: f64 = 1e-6;
@@ -136,7 +126,7 @@ impl Mirrors {
             look: (LOOK * share(seen)).clamp(LEAST_LOOK, 1.0),
             facets,
             covers: of_facets,
-            spread: SPREAD * radius,
+            spread: images::SPREAD * radius,
             apart: APART * radius,
         }
     }
@@ -230,114 +220,9 @@ impl Mirrors {
         }
     }
 
-    /// The part of [`draw`](Self::draw) for chains too long for their beams.
-    ///
-    /// Far images stand low above a surface that sees many of them, so the ray is drawn evenly over the hemisphere.
-    fn draw_images(
-        &self,
-        viewer: &Viewer,
-        target: &Target,
-        uniforms: Uniforms,
-        depth: u32,
-        look_odds: f64,
-        mut found: impl FnMut(Drawn, f64),
-    ) {
-        let [s, t, ..] = uniforms.in_chain(depth, 1 << 30);
-        let direction = in_cone(viewer.normal, 0.0, [s, t]);
-        let mut ray = Ray::new(viewer, direction);
-        let mut followed = look_odds;
-        for order in 0..LONGEST_CHAIN {
-            let [test, onward, select, _] = uniforms.in_chain(depth, order | 3 << 30);
-            let Some((facet, _)) = self.met(&ray, select) else {
-                return;
-            };
-            let goes_on = self.onward(facet, ray.direction);
-            ray.reflect(facet, self.facet(facet));
-            let odds = tested(order + 1);
-            if !target.beam(ray.facets.len()) && test < odds {
-                let image = self.image(&ray.facets, target);
-                let tries = uniforms.fresh(depth, order);
-                if let Some(inverse) = self.tried(viewer, target, direction, image, &ray, tries) {
-                    let choices = uniforms.fresh(depth, order | 1 << 31);
-                    let image = Drawn::Image(image, ray.facets.len(), choices);
-                    found(image, inverse / (odds * followed));
-                }
-            }
-            if onward >= goes_on {
-                return;
-            }
-            followed *= goes_on;
-        }
-    }
-
-    /// One over the probability with which a direction of the hemisphere lies in the cone about an image and leads to it
-    /// as `ray` does, without bias; `None` where `direction`, which has led there, lies outside.
-    ///
-    /// It is the mean number of tries that this takes, Σ (1 − p)ᵗ. Where the mirrors of a room make images without number, p
-    /// has no bound, but the tries that are made grow as log 1/p.
-    fn tried(
-        &self,
-        viewer: &Viewer,
-        target: &Target,
-        direction: DVec3,
-        image: DVec3,
-        ray: &Ray,
-        mut tries: Fresh,
-    ) -> Option<f64> {
-        let cone = self.cone(viewer, image);
-        if direction.dot(cone.axis) < cone.cos {
-            return None;
-        }
-        let leads = |[u, v, mut select, _]: [f64; 4], tries: &mut Fresh| {
-            let tried = in_cone(cone.axis, cone.cos, [u, v]);
-            if tried.dot(viewer.normal) <= 0.0 {
-                return false;
-            }
-            let mut retraced = Ray::new(viewer, tried);
-            while retraced.facets.len() < ray.facets.len()
-                && let Some((facet, _)) = self.met(&retraced, select)
-            {
-                retraced.reflect(facet, self.facet(facet));
-                [select, ..] = tries.next();
-            }
-            retraced.facets.len() == ray.facets.len()
-                && self.same(self.image(&retraced.facets, target), image)
-        };
-        let (mut sum, mut weight, mut count, mut octave) = (1.0, 1.0, 0, TRIES);
-        loop {
-            let numbers = tries.next();
-            if leads(numbers, &mut tries) {
-                break;
-            }
-            count += 1;
-            if count == octave {
-                if numbers[3] < 0.5 {
-                    break;
-                }
-                weight *= 2.0;
-                octave *= 2;
-            }
-            sum += weight;
-        }
-        Some(sum / cone.share())
-    }
-
     /// Whether two places are one.
     pub(crate) fn same(&self, one: DVec3, other: DVec3) -> bool {
         one.distance(other) <= self.apart
-    }
-
-    /// The directions about an image that are tried.
-    fn cone(&self, viewer: &Viewer, image: DVec3) -> Cone {
-        let span = image - viewer.point;
-        let distance = span.length();
-        let axis = span / distance;
-        let sine = (self.spread / distance).min(0.5);
-        Cone {
-            axis,
-            // As many digits as it takes to tell a narrow cone from none.
-            cos: 1.0 - sine * sine / (1.0 + (1.0 - sine * sine).sqrt()),
-        }
     }
 
     /// Probability with which the viewer draws this chain for the target, were the ray that draws it to meet all mirrors
@@ -351,7 +236,7 @@ impl Mirrors {
             * tested(chain.len() as u32);
         if !target.beam(chain.len()) {
             let image = self.image(chain, target);
-            return odds * self.cone(viewer, image).share() * TRIED;
+            return odds * self.image_share(viewer, image);
         }
         let mut view = View::new(viewer);
         for &facet in before {
@@ -469,34 +354,6 @@ impl Mirrors {
         }
         promises
     }
-
-    /// One of the facets that a ray goes through next, with the probability of that choice: each is taken before those
-    /// behind it as often as not.
-    fn met(&self, ray: &Ray, u: f64) -> Option<(u32, f64)> {
-        let mut crossed: Vec<(f64, u32)> = Vec::new();
-        for (index, facet) in (0..).zip(self.facets.list()) {
-            if ray.facets.last() != Some(&index)
-                && let Some(at) = facet.crossing(ray.apex, ray.direction)
-                && at > ray.passed
-            {
-                crossed.push((at, index));
-            }
-        }
-        crossed.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let count = crossed.len();
-        let mut odds = 1.0;
-        let mut left = u;
-        for (index, &(_, facet)) in crossed.iter().enumerate() {
-            if index + 1 < count {
-                odds *= 0.5;
-            }
-            if left < odds || index + 1 == count {
-                return Some((facet, odds));
-            }
-            left -= odds;
-        }
-        None
-    }
 }
 
 impl Target<'_> {
@@ -508,95 +365,6 @@ impl Target<'_> {
     /// Whether it has images to be drawn, of which each point sees one at most in one direction.
     fn has_images(&self) -> bool {
         self.finite && !self.area
-    }
-}
-
-/// A ray that is followed from mirror to mirror, each taken as if nothing stood before it.
-struct Ray {
-    /// Image of the viewer, in m.
-    apex: DVec3,
-    /// Unit vector.
-    direction: DVec3,
-    /// Distance from the apex to the last mirror, in m.
-    passed: f64,
-    facets: Vec<u32>,
-}
-
-impl Ray {
-    fn new(viewer: &Viewer, direction: DVec3) -> Self {
-        Self {
-            apex: viewer.point,
-            direction,
-            passed: 0.0,
-            facets: Vec::new(),
-        }
-    }
-
-    fn reflect(&mut self, facet: u32, plane: &Facet) {
-        let depth = plane.height - self.apex.dot(plane.normal);
-        self.passed = depth / self.direction.dot(plane.normal);
-        self.apex = plane.image(self.apex);
-        self.direction = plane.mirrored(self.direction);
-        self.facets.push(facet);
-    }
-}
-
-/// Directions about one that leads to an image.
-struct Cone {
-    axis: DVec3,
-    cos: f64,
-}
-
-impl Cone {
-    /// Solid angle as a share of the hemisphere's.
-    fn share(&self) -> f64 {
-        1.0 - self.cos
-    }
-}
-
-/// What is seen of the mirrors behind the first of a chain.
-struct View {
-    beam: Beam,
-    facets: Vec<u32>,
-    /// Share of all directions, weighted by the cosine, that goes through these mirrors.
-    share: f64,
-}
-
-impl View {
-    fn new(viewer: &Viewer) -> Self {
-        Self {
-            beam: Beam::hemisphere(viewer.point, viewer.normal),
-            facets: Vec::new(),
-            share: 1.0,
-        }
-    }
-
-    /// What is seen in one more mirror.
-    fn behind(&self, mirrors: &Mirrors, facet: u32) -> Option<Self> {
-        let plane = &mirrors.facets.list()[facet as usize];
-        let window = self
-            .facets
-            .last()
-            .map(|&f| &mirrors.facets.list()[f as usize]);
-        let beam = self.beam.through(plane, window)?;
-        let share = beam.share();
-        if share < NARROWEST {
-            return None;
-        }
-        let mut facets = self.facets.clone();
-        facets.push(facet);
-        Some(Self {
-            beam: beam.mirrored(plane),
-            facets,
-            share,
-        })
-    }
-
-    /// The share of the way along `span` at which the last mirror is passed.
-    fn window(&self, mirrors: &Mirrors, span: DVec3) -> Option<f64> {
-        let plane = &mirrors.facets.list()[*self.facets.last()? as usize];
-        let apex = self.beam.apex;
-        Some((plane.height - apex.dot(plane.normal)) / span.dot(plane.normal))
     }
 }
 
