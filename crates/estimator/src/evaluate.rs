@@ -10,8 +10,8 @@ pub(crate) use strands::Strands;
 use crate::emitters::{Start, State};
 use crate::gather::Part;
 use crate::medium::Step;
+use crate::path::{Connection, Event, Path, Vertex};
 use crate::receiver::Receiver;
-use crate::trace::{Connection, Event, Path, Vertex};
 use crate::variation::Variation;
 use glam::DVec3;
 use malus_optics::{

@@ -5,9 +5,10 @@ use crate::evaluate::{Gathering, Strands};
 use crate::glints::Aim;
 use crate::medium::Medium;
 use crate::pass::{Channels, Effort, Passes};
+use crate::path::Path;
 use crate::random::{Stream, Uniforms};
 use crate::receiver::Receiver;
-use crate::trace::{Path, Techniques, Walk};
+use crate::trace::{Techniques, Walk};
 use crate::variation::Variation;
 use std::ops::Range;
 

@@ -1,6 +1,7 @@
 //! A walk from an emitter taken to its end, vertex by vertex.
 
-use crate::trace::{Event, Path, Vertex, Walk};
+use crate::path::{Event, Path, Vertex};
+use crate::trace::Walk;
 
 /// How a walk from an emitter ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

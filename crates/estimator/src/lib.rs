@@ -24,6 +24,7 @@ mod lookout;
 mod medium;
 mod mirrors;
 mod pass;
+mod path;
 mod picture;
 mod random;
 mod reading;

@@ -4,22 +4,24 @@
 //! the diffuse lobe, a · max(Rs, Rp) for the mirror-like one. So the same walk serves every number of
 //! components and the scalar model beside the polarised one, and no weight can grow along a chain.
 
+mod look;
+
 use crate::direction::cosine_weighted;
-use crate::emitters::{Choice, Start, State};
+use crate::emitters::{Choice, Start};
 use crate::glints::Aim;
 use crate::launched::{Launched, Rival};
 use crate::lookout::Lookout;
-use crate::medium::{Medium, Meeting, Step, target};
+use crate::medium::{Medium, Meeting};
 use crate::mirrors::Viewer;
+use crate::path::{Event, Path, Vertex};
 use crate::random::{Purpose, Uniforms};
 use crate::receiver::Receiver;
 use crate::sight::Seen;
-use crate::variation::Origin;
 use glam::DVec3;
+use look::Look;
 use malus_geometry::Hit;
 use malus_optics::Reflection;
 use std::f64::consts::PI;
-use std::ops::Range;
 
 /// Longest walk, in vertices. What is left of it then is dropped and counted.
 pub(crate) const LONGEST: u32 = 1_000_000;
@@ -45,87 +47,6 @@ impl Techniques {
         local: 1.0,
         gather: false,
     };
-}
-
-/// How a walk goes on at a vertex.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Event {
-    /// It ends.
-    Absorbed,
-    /// Mirror-like reflection.
-    Mirror,
-    /// Straight through a pane.
-    Through,
-    /// Into a random direction, by Lambert's law.
-    Diffuse,
-}
-
-/// A light seen from a point of a walk.
-#[derive(Debug, Clone)]
-pub(crate) struct Connection<'a> {
-    /// Who sends it.
-    pub origin: Origin,
-    /// State of the light.
-    pub state: State<'a>,
-    /// Unit vector from the point towards it, or towards the first mirror.
-    pub toward: DVec3,
-    /// Direction in which the light leaves.
-    pub leaving: DVec3,
-    /// Irradiance of the receiving surface, weighted against other techniques; mirrors and panes are still to be applied.
-    pub irradiance: f64,
-    /// Mirrors and panes on the way, among the path's steps.
-    pub steps: Range<usize>,
-    /// Whether there is a mirror among them.
-    pub mirrored: bool,
-}
-
-/// A point where a walk met a surface.
-#[derive(Debug, Clone)]
-pub(crate) struct Vertex {
-    /// Index of the material met.
-    pub material: u32,
-    /// Where, moved off the surface towards the side that the walk came from.
-    pub position: DVec3,
-    /// Unit normal on that side.
-    pub normal: DVec3,
-    /// Direction of the walk on arrival.
-    pub arriving: DVec3,
-    /// Direction in which it goes on.
-    pub onward: DVec3,
-    /// Mirror-like reflection, or what a pane lets through where the walk goes on like that, in the first variant.
-    pub matrix: Reflection,
-    /// Share of the light that the surface emits towards the walk for which this walk answers: 0 if it emits none.
-    pub emission: f64,
-    /// What this point sees of the emitters, if it was asked: a range of the path's connections.
-    pub connections: Range<usize>,
-    /// How the walk goes on.
-    pub event: Event,
-    /// Probability of that event.
-    pub probability: f64,
-    /// True where the back of a one-sided surface was met: it neither reflects nor emits.
-    pub black: bool,
-    /// For a walk from an emitter: the techniques that compete with joining this point to a sensor.
-    pub rival: Rival,
-}
-
-/// Successive vertices of a walk, with what they see.
-#[derive(Debug, Default)]
-pub(crate) struct Path<'a> {
-    /// The vertices.
-    pub vertices: Vec<Vertex>,
-    /// What they see of the emitters.
-    pub connections: Vec<Connection<'a>>,
-    /// Mirrors and panes on the ways to them.
-    pub steps: Vec<Step>,
-}
-
-impl Path<'_> {
-    /// Forgets everything.
-    pub(crate) fn clear(&mut self) {
-        self.vertices.clear();
-        self.connections.clear();
-        self.steps.clear();
-    }
 }
 
 /// A walk under way.
@@ -474,123 +395,6 @@ impl<'a> Walk<'a> {
             ),
         }
     }
-
-    /// Appends what a point sees of one emitter, straight and in mirrors, weighted against other techniques.
-    ///
-    /// `coupling` is what [`Lookout::coupling`] says of the point.
-    fn connect(&self, path: &mut Path<'a>, look: &Look, coupling: &dyn Fn(DVec3) -> f64) {
-        let Look {
-            viewer,
-            choice,
-            known,
-            diffuse,
-        } = *look;
-        let Medium {
-            emitters, mirrors, ..
-        } = self.medium;
-        let uniforms = self.uniforms.at(self.depth, Purpose::Connect);
-        let Some(site) = emitters.look(choice, uniforms) else {
-            return;
-        };
-        let area_density = site.area_density();
-        // Light received, weighted, for a chain of this probability that was drawn with 1/inverse.
-        let weighted =
-            |toward: DVec3, leaving, square, odds: f64, probability: f64, inverse: f64| {
-                let cos = toward.dot(viewer.normal);
-                let by_chance = site.launched(leaving, square) * cos * odds;
-                let density = area_density.unwrap_or(1.0);
-                let looked = probability * density;
-                if looked <= 0.0 {
-                    return 0.0;
-                }
-                let met = if area_density.is_some() {
-                    diffuse * by_chance
-                } else {
-                    0.0
-                };
-                let local = coupling(toward) * by_chance * density;
-                site.irradiance(leaving, square) * cos * inverse * looked / (looked + met + local)
-            };
-        let first = path.steps.len();
-        let span = site
-            .from
-            .map_or(-site.direction(), |from| from - viewer.point);
-        let square = span.length_squared();
-        let toward = span / square.sqrt();
-        let direct = !viewer.sensor || area_density.is_some() && !known.holds(site.patch);
-        // A point at the source itself has no direction to it.
-        if direct
-            && toward.dot(viewer.normal) > 0.0
-            && site.irradiance(-toward, square) > 0.0
-            && square > 0.0
-            && let Some(passage) =
-                self.medium
-                    .passage(viewer.point, site.from, toward, &mut path.steps)
-        {
-            path.connections.push(Connection {
-                origin: site.origin,
-                state: site.state,
-                toward,
-                leaving: -toward,
-                irradiance: weighted(toward, -toward, square, passage.odds, 1.0, 1.0),
-                steps: first..path.steps.len(),
-                mirrored: false,
-            });
-        } else {
-            path.steps.truncate(first);
-        }
-        if !self.techniques.mirrored || mirrors.is_empty() {
-            return;
-        }
-        let strength = |leaving, square| site.irradiance(leaving, square);
-        let target = target(&site, self.medium.surfaces.radius(), &strength);
-        mirrors.draw(
-            &viewer,
-            &target,
-            self.uniforms,
-            self.depth,
-            |drawn, inverse| {
-                let first = path.steps.len();
-                let found = self.medium.drawn(&viewer, &target, drawn, &mut path.steps);
-                let Some((way, chain)) = found else {
-                    path.steps.truncate(first);
-                    return;
-                };
-                // Before a single mirror no ray was drawn that the light may differ from.
-                let probability = match chain[..] {
-                    [_] => 1.0 / inverse,
-                    _ => mirrors.probability(&viewer, &target, &chain),
-                };
-                let (toward, leaving) = (way.start, -way.arriving);
-                path.connections.push(Connection {
-                    origin: site.origin,
-                    state: site.state,
-                    toward,
-                    leaving,
-                    irradiance: weighted(
-                        toward,
-                        leaving,
-                        way.square,
-                        way.odds,
-                        probability,
-                        inverse / way.drawn,
-                    ),
-                    steps: first..path.steps.len(),
-                    mirrored: true,
-                });
-            },
-        );
-    }
-}
-
-/// Who looks for an emitter, and for which.
-struct Look {
-    viewer: Viewer,
-    choice: Choice,
-    /// What is not looked for straight.
-    known: Seen,
-    /// Probability with which the walk goes on from there into a random direction.
-    diffuse: f64,
 }
 
 /// Probability with which a walk that came from `direction` would be scattered where this one was met.

@@ -7,9 +7,9 @@
 use super::{Chain, emitted, passed_at};
 use crate::emitters::state_of;
 use crate::gather::Part;
+use crate::path::{Connection, Event, Path, Vertex};
 use crate::receiver::Receiver;
 use crate::spread::{Spread, Surface};
-use crate::trace::{Connection, Event, Path, Vertex};
 use malus_optics::{Sensor, Stokes};
 
 /// What a sensor reads of a walk in every variant.

@@ -1,0 +1,90 @@
+//! What a walk has met, as light is sent along it.
+
+use crate::emitters::State;
+use crate::launched::Rival;
+use crate::medium::Step;
+use crate::variation::Origin;
+use glam::DVec3;
+use malus_optics::Reflection;
+use std::ops::Range;
+
+/// How a walk goes on at a vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Event {
+    /// It ends.
+    Absorbed,
+    /// Mirror-like reflection.
+    Mirror,
+    /// Straight through a pane.
+    Through,
+    /// Into a random direction, by Lambert's law.
+    Diffuse,
+}
+
+/// A light seen from a point of a walk.
+#[derive(Debug, Clone)]
+pub(crate) struct Connection<'a> {
+    /// Who sends it.
+    pub origin: Origin,
+    /// State of the light.
+    pub state: State<'a>,
+    /// Unit vector from the point towards it, or towards the first mirror.
+    pub toward: DVec3,
+    /// Direction in which the light leaves.
+    pub leaving: DVec3,
+    /// Irradiance of the receiving surface, weighted against other techniques; mirrors and panes are still to be applied.
+    pub irradiance: f64,
+    /// Mirrors and panes on the way, among the path's steps.
+    pub steps: Range<usize>,
+    /// Whether there is a mirror among them.
+    pub mirrored: bool,
+}
+
+/// A point where a walk met a surface.
+#[derive(Debug, Clone)]
+pub(crate) struct Vertex {
+    /// Index of the material met.
+    pub material: u32,
+    /// Where, moved off the surface towards the side that the walk came from.
+    pub position: DVec3,
+    /// Unit normal on that side.
+    pub normal: DVec3,
+    /// Direction of the walk on arrival.
+    pub arriving: DVec3,
+    /// Direction in which it goes on.
+    pub onward: DVec3,
+    /// Mirror-like reflection, or what a pane lets through where the walk goes on like that, in the first variant.
+    pub matrix: Reflection,
+    /// Share of the light that the surface emits towards the walk for which this walk answers: 0 if it emits none.
+    pub emission: f64,
+    /// What this point sees of the emitters, if it was asked: a range of the path's connections.
+    pub connections: Range<usize>,
+    /// How the walk goes on.
+    pub event: Event,
+    /// Probability of that event.
+    pub probability: f64,
+    /// True where the back of a one-sided surface was met: it neither reflects nor emits.
+    pub black: bool,
+    /// For a walk from an emitter: the techniques that compete with joining this point to a sensor.
+    pub rival: Rival,
+}
+
+/// Successive vertices of a walk, with what they see.
+#[derive(Debug, Default)]
+pub(crate) struct Path<'a> {
+    /// The vertices.
+    pub vertices: Vec<Vertex>,
+    /// What they see of the emitters.
+    pub connections: Vec<Connection<'a>>,
+    /// Mirrors and panes on the ways to them.
+    pub steps: Vec<Step>,
+}
+
+impl Path<'_> {
+    /// Forgets everything.
+    pub(crate) fn clear(&mut self) {
+        self.vertices.clear();
+        self.connections.clear();
+        self.steps.clear();
+    }
+}
