@@ -10,6 +10,8 @@ mod frame;
 mod lanes;
 mod layout;
 mod packet;
+mod rays;
+mod targets;
 mod wide;
 
 use crate::Mesh;
@@ -21,9 +23,9 @@ use obvhs::aabb::Aabb;
 pub use facts::TreeFacts;
 use layout::{Boxes, ENOUGH, Visit};
 pub use layout::{Layout, Preset};
-pub(crate) use packet::Question;
 use packet::Sight;
-pub use packet::Targets;
+pub(crate) use targets::Question;
+pub use targets::Targets;
 
 /// The triangles of a scene below a tree of boxes: what finds out which of them a ray may cross.
 pub struct Tree {
