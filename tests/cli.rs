@@ -12,6 +12,9 @@ mod submitting;
 mod tradeoff;
 
 pub use bad_input::{assert_told, refusal};
+pub use shards::assert_done;
+#[cfg(unix)]
+pub use shards::killed;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 

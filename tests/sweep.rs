@@ -1,5 +1,7 @@
 //! Studies: every variant says what a run of it alone would say, and differences are far better known than either side.
 
+mod parts;
+
 use crate::cli::{Folder, ROOM, stderr};
 use crate::experiment::{s0, scene};
 use malus_estimator::{Answer, Cohort, Estimate, run, run_together};

@@ -198,6 +198,10 @@ pub struct Sweep {
     #[arg(long)]
     pub sensors: bool,
 
+    /// Write variants.parquet beside variants.csv, for a program that was built with the feature parquet
+    #[arg(long)]
+    pub parquet: bool,
+
     /// Draw nothing
     #[arg(long)]
     pub no_pictures: bool,
@@ -205,6 +209,14 @@ pub struct Sweep {
     /// Show no progress and no tables; warnings and errors stay
     #[arg(short, long)]
     pub quiet: bool,
+
+    /// What of the study is computed, and how it survives.
+    #[command(flatten)]
+    pub portion: Portion,
+
+    /// Where it is computed.
+    #[command(flatten)]
+    pub cluster: Cluster,
 }
 
 /// `malus merge`.
@@ -390,14 +402,36 @@ impl Run {
     /// # Errors
     /// The words are none that it gives.
     pub fn told(scene: &Path, words: &[String], samples: u64) -> Result<Self, clap::Error> {
-        let before = ["malus".into(), "run".into(), scene.as_os_str().to_owned()];
         let samples = ["--samples".to_owned(), samples.to_string()];
-        let words = words.iter().chain(&samples).map(OsString::from);
-        match Arguments::try_parse_from(before.into_iter().chain(words))?.command {
+        match told("run", scene, words.iter().chain(&samples))? {
             Command::Run(run) => Ok(*run),
             _ => unreachable!("run was asked for"),
         }
     }
+}
+
+impl Sweep {
+    /// The study that [`Computing::words`] tells of.
+    ///
+    /// # Errors
+    /// The words are none that it gives.
+    pub fn told(study: &Path, words: &[String]) -> Result<Self, clap::Error> {
+        match told("sweep", study, words.iter())? {
+            Command::Sweep(sweep) => Ok(*sweep),
+            _ => unreachable!("sweep was asked for"),
+        }
+    }
+}
+
+/// A command with the file that it reads and further words.
+fn told<'w>(
+    command: &str,
+    file: &Path,
+    words: impl Iterator<Item = &'w String>,
+) -> Result<Command, clap::Error> {
+    let before = ["malus".into(), command.into(), file.as_os_str().to_owned()];
+    let words = before.into_iter().chain(words.map(OsString::from));
+    Ok(Arguments::try_parse_from(words)?.command)
 }
 
 #[cfg(test)]

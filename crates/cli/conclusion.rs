@@ -4,7 +4,10 @@ use crate::findings::Finding;
 use crate::number::duration;
 use anyhow::Result;
 use malus_scene::{Scene, Unit};
-use serde::Serialize;
+use serde::ser::{Error, SerializeSeq};
+use serde::{Serialize, Serializer};
+use std::cell::RefCell;
+use std::io::Write;
 use std::path::Path;
 
 /// What the variants have in common.
@@ -41,7 +44,7 @@ pub struct Circumstances<'a> {
 }
 
 #[derive(Serialize)]
-struct Json<'a, G> {
+struct Json<'a, L> {
     study: &'a str,
     scene: &'a str,
     unit: Unit,
@@ -55,7 +58,21 @@ struct Json<'a, G> {
     variants: usize,
     failed: &'a [String],
     walks: Walks<'a>,
-    sensors: Vec<G>,
+    sensors: L,
+}
+
+/// A list whose items come about as they are written.
+struct OneByOne<G>(RefCell<G>);
+
+impl<'f, G: Iterator<Item = Result<Finding<'f>>>> Serialize for OneByOne<G> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut list = serializer.serialize_seq(None)?;
+        for finding in self.0.borrow_mut().by_ref() {
+            let finding = finding.map_err(|error| S::Error::custom(format!("{error:#}")))?;
+            list.serialize_element(&finding.json())?;
+        }
+        list.end()
+    }
 }
 
 /// How variants share walks.
@@ -67,18 +84,23 @@ struct Walks<'a> {
     apart: &'a [String],
 }
 
-/// The study as JSON.
+/// Writes the study as JSON.
 ///
 /// # Errors
-/// It cannot be written as JSON.
-pub fn json(scene: &Scene, circumstances: &Circumstances, findings: &[Finding]) -> Result<Vec<u8>> {
+/// A finding cannot be had, or the file cannot be written.
+pub fn write<'f>(
+    mut file: impl Write,
+    scene: &Scene,
+    circumstances: &Circumstances,
+    findings: impl Iterator<Item = Result<Finding<'f>>>,
+) -> Result<()> {
     let Computed {
         seed,
         samples,
         dof,
         complete,
     } = *circumstances.computed;
-    let mut text = serde_json::to_vec_pretty(&Json {
+    let json = Json {
         study: circumstances.study,
         scene: &scene.name,
         unit: scene.unit,
@@ -95,20 +117,15 @@ pub fn json(scene: &Scene, circumstances: &Circumstances, findings: &[Finding]) 
             sets: circumstances.batches,
             apart: circumstances.apart,
         },
-        sensors: findings.iter().map(Finding::json).collect(),
-    })?;
-    text.push(b'\n');
-    Ok(text)
+        sensors: OneByOne(RefCell::new(findings)),
+    };
+    serde_json::to_writer_pretty(&mut file, &json)?;
+    Ok(file.write_all(b"\n")?)
 }
 
-/// The study in tables.
-pub fn text(circumstances: &Circumstances, findings: &[Finding], directory: &Path) -> String {
-    let mut text = String::new();
-    for finding in findings {
-        text += &finding.text();
-        text.push('\n');
-    }
-    text += &format!(
+/// How the study came about, in words.
+pub fn text(circumstances: &Circumstances, directory: &Path) -> String {
+    let mut text = format!(
         "{} variants of {} samples each, along {} of walks, seed {}; {} on {} threads\n",
         circumstances.variants,
         circumstances.computed.samples,

@@ -9,6 +9,7 @@ use crate::table::{Table, left, right};
 use malus_estimator::Estimate;
 use malus_scene::{Scene, Study};
 use serde::Serialize;
+use std::sync::Arc;
 
 /// Rows at each end of a long ranking that are printed.
 const SHOWN: usize = 10;
@@ -38,7 +39,7 @@ pub struct Member<'a> {
     /// The variant.
     pub outcome: &'a Outcome,
     /// What it gave.
-    pub measured: &'a Measured,
+    pub measured: Measured,
     /// u0 with its error.
     pub u0: Option<Estimate>,
     /// Its mean less the base's; `None` for the base.
@@ -47,53 +48,58 @@ pub struct Member<'a> {
     of_polarisation: Option<Estimate>,
 }
 
-impl<'a> Finding<'a> {
-    /// What the outcomes, the base first, say of each group that has free points in the base.
-    pub fn all(study: &Study, scene: &'a Scene, outcomes: &'a [Outcome], dof: u32) -> Vec<Self> {
-        let groups = scene.sensors.iter().enumerate();
-        groups
-            .filter_map(|(group, sensor)| {
-                let unit = label::unit(sensor.quantity, scene.unit);
-                Self::of(study, (&sensor.name, unit), group, outcomes, dof)
-            })
-            .collect()
-    }
+/// What a variant gave at one sensor group, with what the base gave there along the same walks or by the same random
+/// numbers.
+pub struct Given<'a> {
+    /// The variant.
+    pub outcome: &'a Outcome,
+    /// What it gave.
+    pub own: Measured,
+    /// What the base gave.
+    pub base: Option<Arc<Measured>>,
+}
 
-    fn of(
+impl Given<'_> {
+    fn less(&self, quantity: Quantity) -> Option<Estimate> {
+        self.own.less(self.base.as_ref()?, quantity)
+    }
+}
+
+impl<'a> Finding<'a> {
+    /// What the base, which comes first, and the variants that have free points at a sensor group say of it; `None` where
+    /// the base has none.
+    pub fn of(
         study: &Study,
-        (sensor, unit): (&'a str, &'static str),
+        scene: &'a Scene,
         group: usize,
-        outcomes: &'a [Outcome],
+        given: Vec<Given<'a>>,
         dof: u32,
     ) -> Option<Self> {
-        let measured = |outcome: &'a Outcome| Some((outcome, outcome.groups[group].as_ref()?));
-        let (first, others) = outcomes.split_first()?;
-        let (_, base) = measured(first)?;
-        let others: Vec<(&Outcome, &Measured)> = others.iter().filter_map(measured).collect();
+        let sensor = &scene.sensors[group];
+        let first = given.first()?.outcome;
         let less = |quantity| {
-            let less = |(outcome, it): &(&Outcome, &Measured)| {
-                it.less(outcome.base[group].as_ref()?, quantity)
-            };
-            others.iter().map(less).collect::<Vec<Option<Estimate>>>()
+            let others = given[1..].iter();
+            others
+                .map(|it| it.less(quantity))
+                .collect::<Vec<Option<Estimate>>>()
         };
         let of_mean: Vec<Estimate> = less(Quantity::Mean).into_iter().flatten().collect();
         let of_mean = differences(&of_mean, dof).into_iter().map(Some);
         let differences = std::iter::once(None).chain(of_mean);
         let of_polarisation = std::iter::once(None).chain(less(Quantity::Polarisation));
-        let all = std::iter::once((first, base)).chain(others.iter().copied());
-        let members: Vec<Member> = all
+        let members: Vec<Member> = given
+            .into_iter()
             .zip(differences.zip(of_polarisation))
-            .map(
-                |((outcome, measured), (difference, of_polarisation))| Member {
-                    outcome,
-                    measured,
-                    u0: measured
-                        .replicas(Quantity::Uniformity)
-                        .map(|it| Estimate::of(&it)),
-                    difference,
-                    of_polarisation,
-                },
-            )
+            .map(|(given, (difference, of_polarisation))| Member {
+                outcome: given.outcome,
+                u0: given
+                    .own
+                    .replicas(Quantity::Uniformity)
+                    .map(|it| Estimate::of(&it)),
+                measured: given.own,
+                difference,
+                of_polarisation,
+            })
             .collect();
         let replicas = |quantity| -> Option<Vec<Vec<f64>>> {
             members
@@ -111,8 +117,8 @@ impl<'a> Finding<'a> {
             .collect();
         let uniformities = replicas(Quantity::Uniformity);
         Some(Self {
-            sensor,
-            unit,
+            sensor: &sensor.name,
+            unit: label::unit(sensor.quantity, scene.unit),
             ranks,
             keys: study.keys(),
             to_mean: sensitivities(&columns, &means[1..]),
@@ -167,7 +173,7 @@ impl<'a> Finding<'a> {
                 mean,
                 mean_standard_error,
                 ..
-            } = *member.measured;
+            } = member.measured;
             row.push(measured(mean, mean_standard_error));
             let difference = member.difference;
             row.push(difference.map_or_else(String::new, |it| estimated(&it.estimate)));

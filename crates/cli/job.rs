@@ -33,15 +33,17 @@ impl Job<'_> {
     /// # Errors
     /// The part does not fit the scene, or a checkpoint cannot be written.
     pub fn compute(&self, part: &mut Part, keeper: &mut Keeper) -> Result<Results> {
-        let Part { head, state, films } = part;
+        let Part {
+            head, state, films, ..
+        } = part;
         let (started, before) = (Instant::now(), head.seconds);
         let mut reporter = Reporter::new(self.quiet, self.settings.seconds);
         let mut watch = |progress: &Progress, state: &State| {
             head.samples = progress.samples;
             head.seconds = before + started.elapsed().as_secs_f64();
             reporter.show(progress, head.seconds);
-            let kept =
-                keeper.keep(|| part::write(self.directory, self.name, head, state, films.iter()));
+            let kept = keeper
+                .keep(|| part::write(self.directory, self.name, head, state, films.iter(), None));
             if !kept || self.interrupt.asked() {
                 Answer::Interrupt
             } else {
@@ -61,7 +63,9 @@ impl Job<'_> {
     /// A checkpoint cannot be written.
     pub fn shoot(&self, part: &mut Part, keeper: &mut Keeper, index: usize) -> Result<()> {
         let camera = &self.scene.cameras[index];
-        let Part { head, state, films } = part;
+        let Part {
+            head, state, films, ..
+        } = part;
         films.resize(self.scene.cameras.len(), Film::default());
         let mut film = std::mem::take(&mut films[index]);
         let started = Instant::now();
@@ -79,7 +83,7 @@ impl Job<'_> {
                     let others = films.iter().enumerate();
                     let films =
                         others.map(|(other, kept)| if other == index { film } else { kept });
-                    part::write(self.directory, self.name, head, state, films)
+                    part::write(self.directory, self.name, head, state, films, None)
                 });
                 if !kept || self.interrupt.asked() {
                     Answer::Interrupt
@@ -98,8 +102,10 @@ impl Job<'_> {
     /// # Errors
     /// It cannot be written.
     pub fn set_aside(&self, part: &Part) -> Result<()> {
-        let Part { head, state, films } = part;
-        part::write(self.directory, self.name, head, state, films.iter())
+        let Part {
+            head, state, films, ..
+        } = part;
+        part::write(self.directory, self.name, head, state, films.iter(), None)
             .context("what was computed last is lost")
     }
 }

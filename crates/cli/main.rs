@@ -2,7 +2,6 @@
 
 mod analyse;
 mod args;
-mod batch;
 mod bench_bvh;
 mod chart;
 mod check;
@@ -16,8 +15,10 @@ mod failure;
 mod field;
 mod findings;
 mod frame;
+mod handing;
 mod interrupt;
 mod job;
+mod journal;
 mod keeper;
 mod label;
 mod merge;
@@ -48,7 +49,6 @@ mod table;
 mod tick;
 mod trade;
 mod tradeoff;
-mod variants;
 
 use args::{Arguments, Command};
 use clap::Parser;

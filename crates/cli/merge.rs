@@ -1,4 +1,4 @@
-//! `malus merge`: join the shards of a run.
+//! `malus merge`: join the shards of a run or of a study.
 
 use crate::args;
 use crate::failure::Failure;
@@ -7,11 +7,11 @@ use crate::part::Head;
 use crate::report::{Report, warn};
 use crate::shards::Shards;
 use crate::summary::Circumstances;
-use crate::{picture, run};
+use crate::{picture, run, sweep};
 use anyhow::{Context, Result, anyhow, ensure};
 use malus_estimator::Answer;
 use malus_scene::{Fingerprint, Scene, Settings};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Joins shards and writes the results of the whole run.
 ///
@@ -21,11 +21,14 @@ pub fn merge(command: &args::Merge) -> Result<(), Failure> {
     let shards = Shards::read(&command.shards).map_err(Failure::input)?;
     shards.check().map_err(Failure::input)?;
     let head = shards.any().head.clone();
+    if head.study.is_some() {
+        return sweep::merge::merge(command, &shards);
+    }
     let asked = asked(command, &head).map_err(Failure::input)?;
     let scene = run::load(&asked)?;
     let settings = run::settings(&asked, &scene);
     let found = scene.fingerprint(&settings);
-    same(&head.fingerprint, &found, &asked).map_err(Failure::input)?;
+    same(&head.fingerprint, &found, &asked.scene).map_err(Failure::input)?;
     let output = command.output.as_ref().unwrap_or(&command.shards[0]);
     let directory = Directory::prepare(output).map_err(Failure::run)?;
     warn(&scene.warnings);
@@ -72,23 +75,36 @@ fn join(
 /// The run whose shards these are.
 fn asked(command: &args::Merge, head: &Head) -> Result<args::Run> {
     let goal = head.goal.context("the shards tell no number of samples")?;
-    let scene = match &command.scene {
-        Some(path) => path.clone(),
-        None => {
-            let path = PathBuf::from(&head.scene);
-            ensure!(
-                path.exists(),
-                "{}: the scene of these shards is no longer there; give it with --scene",
-                path.display()
-            );
-            path
-        }
-    };
+    let scene = asked_scene(command, head)?;
     Ok(args::Run::told(&scene, &head.words, goal)?)
 }
 
-/// Makes sure that the scene is what it was.
-fn same(shards: &Fingerprint, scene: &Fingerprint, asked: &args::Run) -> Result<()> {
+/// The file of the scene or study whose shards these are.
+///
+/// # Errors
+/// It is not where it was, and nothing tells where it is.
+pub fn asked_scene(command: &args::Merge, head: &Head) -> Result<PathBuf> {
+    if let Some(path) = &command.scene {
+        return Ok(path.clone());
+    }
+    let path = PathBuf::from(&head.scene);
+    let what = match head.study {
+        Some(_) => "study",
+        None => "scene",
+    };
+    ensure!(
+        path.exists(),
+        "{}: the {what} of these shards is no longer there; give it with --scene",
+        path.display()
+    );
+    Ok(path)
+}
+
+/// Makes sure that the scene is what it was; `path` is what was read.
+///
+/// # Errors
+/// It is another; the error tells what differs.
+pub fn same(shards: &Fingerprint, scene: &Fingerprint, path: &Path) -> Result<()> {
     let differences = shards.differences(scene);
     if differences.is_empty() {
         return Ok(());
@@ -96,7 +112,7 @@ fn same(shards: &Fingerprint, scene: &Fingerprint, asked: &args::Run) -> Result<
     Err(anyhow!(
         "{}: is not the scene that the shards were computed of: they differ in {}; give that scene with --scene, or compute \
          the shards again",
-        asked.scene.display(),
+        path.display(),
         differences.join(", ")
     ))
 }

@@ -2,7 +2,7 @@
 
 use crate::digest::Digest;
 use malus_estimator::{Estimate, Group, Replicates};
-use std::sync::Arc;
+use serde::{Deserialize, Serialize};
 
 /// One variant.
 #[derive(Clone, Debug)]
@@ -11,10 +11,6 @@ pub struct Outcome {
     pub name: String,
     /// The value of each key of the study, as text; `None` where nothing tells.
     pub values: Vec<Option<String>>,
-    /// What each sensor group measured; `None` where all its points are inside a solid.
-    pub groups: Vec<Option<Measured>>,
-    /// What the base gave along the same walks, or by the same random numbers.
-    pub base: Arc<Vec<Option<Measured>>>,
 }
 
 impl Outcome {
@@ -26,7 +22,7 @@ impl Outcome {
 }
 
 /// What one sensor group measured, in the unit of its readings.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Mean of S0.
     pub mean: f64,
@@ -52,6 +48,14 @@ pub enum Quantity {
     Uniformity,
     /// Mean of S0 less that of the scalar model.
     Polarisation,
+}
+
+/// What each sensor group measured; `None` where all its points are inside a solid.
+pub type Groups = Vec<Option<Measured>>;
+
+/// What sensor groups measured.
+pub fn measured(groups: &[Group]) -> Groups {
+    groups.iter().map(Measured::of).collect()
 }
 
 impl Measured {

@@ -1,11 +1,12 @@
-//! A run, or a shard of one, as far as it has come, and the file that keeps it.
+//! A run or a study, or a shard of one, as far as it has come, and the file that keeps it.
 //!
-//! The file is a line that names its form, then head, sums and films, each as postcard writes it, then a SipHash-1-3 of
-//! all that stands before, 16 bytes.
+//! The file is a line that names its form, then head, sums, films and shares of walks, each as postcard writes it, then a
+//! SipHash-1-3 of all that stands before, 16 bytes. A study has a journal beside it, of what is finished.
 
+use crate::journal::Extent;
 use crate::output::Directory;
 use anyhow::{Context, Error, Result, anyhow, bail, ensure};
-use malus_estimator::{Film, Shard, State};
+use malus_estimator::{Allocation, Film, Shard, State};
 use malus_scene::Fingerprint;
 use serde::{Deserialize, Serialize};
 use siphasher::sip128::{Hasher128, SipHasher13};
@@ -15,10 +16,10 @@ use std::io::{Read, Write};
 use std::path::Path;
 
 /// First line of a file; the number rises whenever what follows it is laid out anew.
-const FORM: &str = "malus state 1\n";
+const FORM: &str = "malus state 2\n";
 
 /// The number in it.
-const FORM_NUMBER: u32 = 1;
+const FORM_NUMBER: u32 = 2;
 
 /// What is said of a file that is not as it was written.
 const DAMAGED: &str =
@@ -63,17 +64,40 @@ pub struct Head {
     pub words: Vec<String>,
     /// Whether cameras take pictures.
     pub pictures: bool,
+    /// Of a study: what varies, and how far it has come. `scene` is then the study's file.
+    pub study: Option<Studied>,
 }
 
-/// A run, or a shard of one, as far as it has come.
+/// What the file of a study says of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Studied {
+    /// Digest of what varies.
+    pub digest: u128,
+    /// What stops the base, in words.
+    pub rule: String,
+    /// Whether the points of each variant are written.
+    pub sensors: bool,
+    /// Whether the table of variants is written as Parquet too.
+    pub parquet: bool,
+    /// Samples that the base has taken, and every variant takes; `None` while the base is computed.
+    pub samples: Option<u64>,
+    /// How much of the journal holds batches that are finished.
+    pub finished: Extent,
+    /// Share of the variants that is computed, 0 … 1.
+    pub share: f64,
+}
+
+/// A run or a study, or a shard of one, as far as it has come.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// What it is.
     pub head: Head,
-    /// Sums.
+    /// Sums; of a study, those of the batch that is computed.
     pub state: State,
     /// What the cameras have taken, in the scene's order.
     pub films: Vec<Film>,
+    /// How walks are shared out between the sensors; of a study, once its base is computed.
+    pub allocation: Option<Allocation>,
 }
 
 impl Head {
@@ -110,12 +134,63 @@ impl Head {
             "is of another scene or other settings: they differ in {}",
             differences.join(", ")
         );
+        match (&self.study, &found.study) {
+            (None, None) => {}
+            (Some(study), Some(found)) => study.check(found)?,
+            (None, Some(_)) => bail!("is of a study, this is a run"),
+            (Some(_), None) => bail!("is of a run, this is a study"),
+        }
         Ok(())
     }
 
     /// Whether nothing is left to do of a shard for a run that `run` tells of.
     pub fn finishes(&self, run: &Self) -> bool {
         self.complete && self.goal == run.goal && self.pictures == run.pictures
+    }
+
+    /// How much of the journal beside it counts.
+    pub fn finished(&self) -> Extent {
+        self.study
+            .as_ref()
+            .map_or(Extent::default(), |study| study.finished)
+    }
+
+    /// Share of it that is computed, where there are so many cameras.
+    pub fn share(&self, cameras: usize) -> f64 {
+        match &self.study {
+            Some(study) => study.share,
+            None => {
+                let goal = self.goal.unwrap_or(self.samples).max(1);
+                (self.samples as f64 / goal as f64 + self.shot) / (1 + cameras) as f64
+            }
+        }
+    }
+}
+
+impl Studied {
+    /// Checks that a file goes on with this study.
+    ///
+    /// # Errors
+    /// Something else varies, or variants are computed or written otherwise; the error tells which.
+    fn check(&self, found: &Self) -> Result<()> {
+        ensure!(
+            found.digest == self.digest,
+            "is of another study: other keys vary, or they have other values"
+        );
+        ensure!(
+            found.rule == self.rule,
+            "was computed with {}, and {} is asked for: a study is not taken further",
+            found.rule,
+            self.rule
+        );
+        let with = |sensors: bool| if sensors { "with" } else { "without" };
+        ensure!(
+            found.sensors == self.sensors,
+            "was computed {} --sensors, this is one {}",
+            with(found.sensors),
+            with(self.sensors)
+        );
+        Ok(())
     }
 }
 
@@ -161,6 +236,7 @@ pub fn write<'f>(
     head: &Head,
     state: &State,
     films: impl Iterator<Item = &'f Film>,
+    allocation: Option<&Allocation>,
 ) -> Result<()> {
     let films: Vec<&Film> = films.collect();
     directory.write_by(name, |file| {
@@ -173,6 +249,7 @@ pub fn write<'f>(
         summed.put(head)?;
         summed.put(state)?;
         summed.put(&films)?;
+        summed.put(&allocation)?;
         let checksum = summed.sum.finish128().as_bytes();
         Ok(file.write_all(&checksum)?)
     })
@@ -220,7 +297,7 @@ fn parsed(bytes: &[u8]) -> Result<Part> {
     if !bytes.starts_with(FORM.as_bytes()) {
         let form = bytes.strip_prefix(ANY_FORM.as_bytes());
         let Some(form) = form else {
-            bail!("is no state of a run, as malus run writes it");
+            bail!("is no state of a run, as malus run and malus sweep write it");
         };
         let form = form.split(|&byte| byte == b'\n').next().unwrap_or_default();
         let form = str::from_utf8(form)
@@ -241,8 +318,14 @@ fn parsed(bytes: &[u8]) -> Result<Part> {
     let body = content.get(FORM.len()..).context(DAMAGED)?;
     let (head, body) = postcard::take_from_bytes(body).context(DAMAGED)?;
     let (state, body) = postcard::take_from_bytes(body).context(DAMAGED)?;
-    let films = postcard::from_bytes(body).context(DAMAGED)?;
-    Ok(Part { head, state, films })
+    let (films, body) = postcard::take_from_bytes(body).context(DAMAGED)?;
+    let allocation = postcard::from_bytes(body).context(DAMAGED)?;
+    Ok(Part {
+        head,
+        state,
+        films,
+        allocation,
+    })
 }
 
 #[cfg(test)]

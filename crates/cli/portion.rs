@@ -2,7 +2,7 @@
 
 use crate::keeper::{self, Interval};
 use crate::output::Directory;
-use crate::part::{CHECKPOINT, Head, Part};
+use crate::part::{CHECKPOINT, Head, Part, Studied};
 use crate::report::warn;
 use anyhow::{Context, Error, Result, anyhow};
 use clap::Args;
@@ -12,8 +12,8 @@ use malus_scene::Settings;
 /// Options of what is computed of a run, and of how it survives what ends the program.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Portion {
-    /// Compute part I of N of the run, 1 ≤ I ≤ N ≤ 64, and write it to DIR for `malus merge`. The run has to be stopped by
-    /// its number of samples
+    /// Compute part I of N, 1 ≤ I ≤ N ≤ 64, and write it to DIR for `malus merge`. The run has to be stopped by its number of
+    /// samples
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     pub shard: Option<String>,
 
@@ -60,14 +60,20 @@ impl Portion {
         directory.tidy(if self.resume && whole { "" } else { name });
         if !(self.resume && path.exists()) {
             if whole && path.exists() {
+                let instead = match head.study {
+                    // Its journal grows in the place of the old one.
+                    Some(_) => "in its place; --resume would have gone on with it",
+                    None => "--resume would go on with it",
+                };
                 warn(&[format!(
-                    "{}: an earlier run was set aside there; this one begins anew, --resume would go on with it",
+                    "{}: an earlier run was set aside there; this one begins anew, {instead}",
                     path.display()
                 )]);
             }
             return Ok(Part {
                 state: State::new(head.shard),
                 films: Vec::new(),
+                allocation: None,
                 head,
             });
         }
@@ -85,6 +91,11 @@ impl Portion {
                 "holds {taken} samples already, and {goal} are asked for"
             )));
         }
+        let study = head.study.as_ref().zip(part.head.study.take());
+        let study = study.map(|(asked, found)| Studied {
+            parquet: asked.parquet,
+            ..found
+        });
         // The same sums may be taken further, or have pictures added.
         let done = part.head.complete
             && part.head.goal == head.goal
@@ -94,6 +105,7 @@ impl Portion {
             samples: part.head.samples,
             shot: part.head.shot,
             seconds: part.head.seconds,
+            study,
             ..head
         };
         Ok(part)

@@ -1,19 +1,17 @@
 //! `malus run`: compute a scene, or a shard of it, and write what comes out.
 
 use crate::args;
-use crate::computing::quoted;
 use crate::failure::Failure;
+use crate::handing::Handing;
 use crate::interrupt::Interrupt;
 use crate::job::Job;
 use crate::keeper::Keeper;
 use crate::output::Directory;
 use crate::part::{CHECKPOINT, Head, Part};
-use crate::portion::{rounded_up, samples_alone};
+use crate::portion::rounded_up;
 use crate::report::{Report, print, warn};
-use crate::slurm::Array;
-use crate::submit::Reach;
 use crate::summary::Circumstances;
-use crate::{merge, picture, shards, stop, submit};
+use crate::{picture, stop};
 use anyhow::Context;
 use malus_estimator::Shard;
 use malus_scene::{Scene, Settings};
@@ -158,71 +156,25 @@ fn compute_shard(
 
 /// Hands the scene to a cluster, as shards.
 fn hand_in(command: &args::Run, scene: &Scene, settings: &Settings) -> Result<End, Failure> {
-    let goal = samples_alone(settings, "--submit").map_err(Failure::input)?;
-    let goal = rounded_up(goal);
-    let count = command.cluster.count().map_err(Failure::input)?;
-    let head = head(command, scene, settings, None);
-    let output = std::path::absolute(directory(command.output.as_deref(), &command.scene))
-        .map_err(|e| Failure::run(e.into()))?;
-    let directory = Directory::prepare(&output).map_err(Failure::run)?;
-    shards::belong(&output, &head, count).map_err(Failure::input)?;
+    let flags: &[&str] = match command.no_pictures {
+        true => &["--no-pictures"],
+        false => &[],
+    };
+    let handing = Handing {
+        cluster: &command.cluster,
+        command: "run",
+        input: &command.scene,
+        title: &scene.name,
+        head: &head(command, scene, settings, None),
+        settings,
+        cameras: scene.cameras.len(),
+        checkpoint: command.portion.checkpoint.as_deref(),
+        flags,
+        output: directory(command.output.as_deref(), &command.scene),
+        quiet: command.quiet,
+    };
     warn(&scene.warnings);
-    let reach = |index| {
-        let shard = Shard::new(index, count).expect("the number of shards is checked");
-        let found = Part::peek(&output.join(Part::name_of(shard)));
-        found.map_or(Reach::default(), |found| Reach {
-            share: (found.samples as f64 / goal as f64 + found.shot)
-                / (1 + scene.cameras.len()) as f64,
-            finished: found.finishes(&head),
-        })
-    };
-    let program = std::env::current_exe().context("cannot tell where this program is");
-    let title = format!("malus {}", scene.name);
-    let array = Array {
-        directory: &directory,
-        title: &title,
-        words: &words(
-            command,
-            &program.map_err(Failure::run)?,
-            &head,
-            goal,
-            &output,
-        ),
-        count,
-        options: command.cluster.sbatch.as_deref().unwrap_or_default(),
-    };
-    let merge = format!("malus merge {}", quoted(&output.to_string_lossy()));
-    let end = submit::submit(&command.cluster, &array, &reach, &merge, command.quiet)?;
-    if end == End::Complete && command.cluster.wait {
-        merge::merge(&args::Merge {
-            shards: vec![output],
-            output: None,
-            scene: Some(command.scene.clone()),
-            no_pictures: command.no_pictures,
-            quiet: command.quiet,
-        })?;
-    }
-    Ok(end)
-}
-
-/// The program and its arguments that compute a shard, but for which.
-fn words(
-    command: &args::Run,
-    program: &Path,
-    head: &Head,
-    goal: u64,
-    output: &Path,
-) -> Vec<String> {
-    let text = |path: &Path| path.to_string_lossy().into_owned();
-    let mut words = vec![text(program), "run".to_owned(), head.scene.clone()];
-    words.extend(head.words.iter().cloned());
-    words.extend(["--samples".to_owned(), goal.to_string()]);
-    if let Some(seconds) = &command.portion.checkpoint {
-        words.extend(["--checkpoint".to_owned(), seconds.clone()]);
-    }
-    words.extend(command.no_pictures.then(|| "--no-pictures".to_owned()));
-    words.extend(["--quiet".to_owned(), "-o".to_owned(), text(output)]);
-    words
+    handing.hand_in()
 }
 
 /// Indices of the cameras that take pictures.
@@ -250,6 +202,7 @@ fn head(command: &args::Run, scene: &Scene, settings: &Settings, shard: Option<S
         scene: path.to_string_lossy().into_owned(),
         words: command.computing.words(),
         pictures: !command.no_pictures,
+        study: None,
     }
 }
 

@@ -37,6 +37,11 @@ impl Shards {
         &first.expect("directories without shards are refused").1
     }
 
+    /// All of them, each with its file.
+    pub fn all(&self) -> impl Iterator<Item = &(PathBuf, Part)> {
+        self.0.values()
+    }
+
     /// Makes sure that all shards are there and finished.
     ///
     /// # Errors
@@ -50,8 +55,12 @@ impl Shards {
         let mut wrong: Vec<String> = self.0.values().filter_map(unfinished).collect();
         if !missing.is_empty() {
             wrong.push(format!(
-                "of {count} shards these are missing: {}; compute each with malus run … --shard I/{count}",
-                missing.join(", ")
+                "of {count} shards these are missing: {}; compute each with malus {} … --shard I/{count}",
+                missing.join(", "),
+                match self.any().head.study {
+                    Some(_) => "sweep",
+                    None => "run",
+                }
             ));
         }
         ensure!(wrong.is_empty(), wrong.join("\n"));
@@ -137,7 +146,7 @@ fn files(directory: &Path) -> Result<Vec<PathBuf>> {
     let files = entries(directory)?;
     if files.is_empty() {
         bail!(
-            "{}: holds no shards, files shard-I-of-N.malus as malus run --shard I/N writes them",
+            "{}: holds no shards, files shard-I-of-N.malus as malus run --shard I/N and malus sweep --shard I/N write them",
             directory.display()
         );
     }
@@ -165,6 +174,9 @@ fn admit(shards: &mut BTreeMap<u32, (PathBuf, Part)>, path: PathBuf, part: Part)
         let differences = head.fingerprint.differences(&first.head.fingerprint);
         if !differences.is_empty() {
             return Err(told(format!("they differ in {}", differences.join(", "))));
+        }
+        if let Err(error) = first.head.check_run(head) {
+            return Err(told(format!("it {error}")));
         }
         let samples = |goal: Option<u64>| goal.map_or("any number".to_owned(), |n| n.to_string());
         if head.goal != first.head.goal {
@@ -198,12 +210,18 @@ fn admit(shards: &mut BTreeMap<u32, (PathBuf, Part)>, path: PathBuf, part: Part)
 fn unfinished((path, part): &(PathBuf, Part)) -> Option<String> {
     let head = &part.head;
     let goal = head.goal.unwrap_or(head.samples);
-    (!head.complete).then(|| {
-        format!(
+    (!head.complete).then(|| match &head.study {
+        Some(study) => format!(
+            "{}: is not finished ({:.0} % of the variants); compute shard {} again with --resume",
+            path.display(),
+            100.0 * study.share,
+            head.shard
+        ),
+        None => format!(
             "{}: is not finished ({} of {goal} samples); compute shard {} again with --resume",
             path.display(),
             head.samples,
             head.shard
-        )
+        ),
     })
 }

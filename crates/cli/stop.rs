@@ -15,6 +15,19 @@ pub fn narrow(settings: &mut Settings, given: &[Override]) {
     }
 }
 
+/// The rules in words.
+pub fn words(settings: &Settings) -> String {
+    let rules = [
+        settings.samples.map(|it| format!("samples = {it}")),
+        settings
+            .relative_error
+            .map(|it| format!("relative_error = {it}")),
+        settings.seconds.map(|it| format!("seconds = {it}")),
+    ];
+    let rules: Vec<String> = rules.into_iter().flatten().collect();
+    rules.join(" and ")
+}
+
 /// Whether to go on after `elapsed` seconds: not past a checkpoint whose successor would come later than `limit`
 /// seconds, at the pace so far.
 pub fn answer(progress: &Progress, elapsed: f64, limit: Option<f64>) -> Answer {

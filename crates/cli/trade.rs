@@ -164,7 +164,7 @@ fn uniformity(finding: &Finding, reach: f64) -> Option<(Chart, String)> {
         .members
         .iter()
         .filter_map(|member| {
-            let (u0, mean) = (member.u0?, member.measured);
+            let (u0, mean) = (member.u0?, &member.measured);
             let errors = [mean.mean_standard_error, u0.standard_error].map(|se| reach * se);
             Some((member, [mean.mean, u0.mean], errors))
         })

@@ -239,7 +239,7 @@ fn a_scene_that_has_moved_is_given_anew() {
 /// itself. Gives how often it was killed: less where it was over before.
 #[cfg(unix)]
 #[track_caller]
-fn killed(folder: &Folder, words: &[&str], state: &str, times: u32) -> u32 {
+pub fn killed(folder: &Folder, words: &[&str], state: &str, times: u32) -> u32 {
     let written = || {
         std::fs::metadata(folder.path(state))
             .and_then(|it| it.modified())

@@ -36,8 +36,12 @@ fn cluster(sbatch: &str, queue: &str) -> Folder {
 
 /// `malus run room.toml -o out --submit slurm` and more words.
 fn submitted(folder: &Folder, words: &[&str]) -> Output {
+    handed_in(folder, &["run", "room.toml"], words)
+}
+
+fn handed_in(folder: &Folder, what: &[&str], words: &[&str]) -> Output {
     let path = std::env::var("PATH").unwrap();
-    let mut command = folder.command(&["run", "room.toml", "-o", "out", "--submit", "slurm"]);
+    let mut command = folder.command(&[what, &["-o", "out", "--submit", "slurm"]].concat());
     command
         .args(words)
         .env("PATH", format!("{}:{path}", folder.path("").display()));
@@ -80,6 +84,36 @@ fn what_failed_is_submitted_again_and_all_is_merged() {
         std::fs::remove_file(folder.path(&format!("out/{name}"))).unwrap();
     }
     assert_same(&folder, "whole", "out");
+}
+
+#[test]
+fn a_study_is_handed_in_and_merged_like_a_run() {
+    let folder = cluster(SBATCH, "");
+    let study = "scene = \"room.toml\"\n[grid]\n\"material.plaster.rho\" = [0.4, 0.6]\n";
+    std::fs::write(folder.path("study.toml"), study).unwrap();
+    let sweep = ["sweep", "study.toml"];
+    assert_done(&folder.malus(&[&sweep[..], &["-o", "whole", "--sensors"]].concat()));
+    let words = ["--shards", "4", "--wait", "--sensors"];
+    let output = handed_in(&folder, &sweep, &words);
+    assert_done(&output);
+    assert_eq!(folder.text("arrays"), "1,2,3,4\n3\n");
+    assert_told(&stdout(&output), &["4 of 4 shards submitted", "desk"]);
+    assert_told(&stderr(&output), &["submitted again: shards 3"]);
+    for name in ["variants.csv", "variants/002/sensors.csv", "desk-trade.svg"] {
+        let [whole, merged] = ["whole", "out"].map(|it| folder.text(&format!("{it}/{name}")));
+        assert_eq!(whole, merged, "{name}");
+    }
+    let output = handed_in(&folder, &sweep, &["--shards", "4", "--sensors"]);
+    assert_told(&stdout(&output), &["nothing is left to submit"]);
+    // Shards of a run or of another study do not lie among those of this one.
+    for (what, told) in [
+        (["run", "room.toml"], "is of a study"),
+        (sweep, "--sensors"),
+    ] {
+        let output = handed_in(&folder, &what, &["--shards", "4"]);
+        assert_eq!(output.status.code(), Some(2));
+        assert_told(&stderr(&output), &["shard-01-of-04.malus: ", told]);
+    }
 }
 
 #[test]

@@ -14,6 +14,7 @@ use crate::receiver::Receiver;
 use crate::statistics::REPLICAS;
 use malus_geometry::Targets;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// A sensor's share of walks is a multiple of one over this.
 const PARTS: u32 = 64;
@@ -43,7 +44,7 @@ const JOIN: f64 = 0.2;
 const LOOK: f64 = 4.0;
 
 /// Walks from each sensor, relative to those from the emitters, as the pilot of a run has found them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Allocation {
     parts: Vec<u32>,
     /// Relative variance at the worst sensor that one walk from the emitters, with its share of walks from the sensors, is

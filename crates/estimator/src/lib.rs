@@ -44,7 +44,7 @@ pub use picture::{Film, Picture, expose};
 pub use results::{
     Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Replicates, Results, Shares, Stop,
 };
-pub use run::{Together, resume, run, run_together};
+pub use run::{Together, resume, resume_together, run, run_together};
 pub use state::{NoShard, Shard, State, StateError};
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};
 pub use variation::Cohort;

@@ -3,6 +3,7 @@
 use crate::allocation::Allocation;
 use malus_optics::Representation;
 use malus_scene::Estimator;
+use serde::{Deserialize, Serialize};
 
 /// The outcome of a run.
 #[derive(Debug, Clone)]
@@ -87,7 +88,7 @@ pub struct Group {
 
 /// What each replica of a run gave for a sensor group: runs of one seed and number of samples differ by the mean of the
 /// differences, with the standard error of those.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Replicates {
     /// Mean of S0 over the free points, unit/m².
     pub mean: Vec<f64>,

@@ -123,15 +123,31 @@ pub fn run_together(
     like: Option<&Allocation>,
     watch: &mut dyn FnMut(&Progress) -> Answer,
 ) -> Together {
+    let mut state = State::new(Shard::WHOLE);
+    let together = resume_together(scenes, settings, like, &mut state, &mut |progress, _| {
+        watch(progress)
+    });
+    together.expect("a state without walks fits every scene")
+}
+
+/// The same, from a state that is taken further as by [`resume`].
+///
+/// # Errors
+/// The state does not fit the scenes, or has come further than `settings.samples`.
+pub fn resume_together(
+    scenes: &[&Scene],
+    settings: &Settings,
+    like: Option<&Allocation>,
+    state: &mut State,
+    watch: &mut dyn FnMut(&Progress, &State) -> Answer,
+) -> Result<Together, StateError> {
     let covering = covering(scenes);
     let ensemble = Ensemble {
         scenes,
         covering: &covering,
         like,
     };
-    let mut state = State::new(Shard::WHOLE);
-    let together = ensemble.run(settings, &mut state, &mut |progress, _| watch(progress));
-    together.expect("a state without walks fits every scene")
+    ensemble.run(settings, state, watch)
 }
 
 /// Scenes that are evaluated along the same walks.

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use siphasher::sip128::{Hasher128, SipHasher13};
 use std::fmt::{self, Debug, Write};
 use std::hash::Hasher;
+use std::sync::Arc;
 
 /// What is told apart, in the words of the scene file.
 const PARTS: [&str; 7] = [
@@ -17,6 +18,9 @@ const PARTS: [&str; 7] = [
     "cameras",
     "[run]",
 ];
+
+/// Which of them the geometry is.
+const GEOMETRY: usize = 1;
 
 /// All that the sums of a run depend on, but how many they are: two scenes that give the same numbers for any number of
 /// samples have the same fingerprint, and any others do not.
@@ -41,16 +45,36 @@ impl Scene {
     /// What results depend on that are computed of this scene with `settings` in place of its own.
     #[must_use]
     pub fn fingerprint(&self, settings: &Settings) -> Fingerprint {
+        self.fingerprint_with(settings, digest_of_mesh(self.surfaces.mesh()))
+    }
+
+    /// The same where another scene's is known: geometry that the two share is not looked through again.
+    #[must_use]
+    pub fn fingerprint_beside(
+        &self,
+        settings: &Settings,
+        other: &Self,
+        known: &Fingerprint,
+    ) -> Fingerprint {
+        if Arc::ptr_eq(&self.surfaces, &other.surfaces) {
+            self.fingerprint_with(settings, known.0[GEOMETRY])
+        } else {
+            self.fingerprint(settings)
+        }
+    }
+
+    fn fingerprint_with(&self, settings: &Settings, geometry: u128) -> Fingerprint {
         let Self {
             name,
             unit,
-            surfaces,
             materials,
             sources,
             sensors,
             cameras,
             // Given as an argument.
             settings: _,
+            // Its digest is given too.
+            surfaces: _,
             // They follow from the rest, or are words for people.
             need: _,
             objects: _,
@@ -60,7 +84,7 @@ impl Scene {
         let materials: Vec<_> = materials.iter().map(resolved).collect();
         Fingerprint([
             digest(&(name, unit)),
-            digest_of_mesh(surfaces.mesh()),
+            geometry,
             digest(&materials),
             digest(sources),
             digest(sensors),
@@ -94,7 +118,7 @@ fn without_stops(settings: &Settings) -> Settings {
 
 /// Digest of all that a value holds: what derives `Debug` leaves no field out, and a float is written so that it reads
 /// back to the same bits.
-fn digest(value: &impl Debug) -> u128 {
+pub(crate) fn digest(value: &impl Debug) -> u128 {
     let mut text = Text(SipHasher13::new());
     write!(text, "{value:?}").expect("a digest takes any text");
     text.0.finish128().as_u128()

@@ -7,6 +7,7 @@ mod sample;
 use crate::document::Node;
 use crate::error::Error;
 use crate::file::SceneFile;
+use crate::fingerprint::digest;
 use crate::foundation::{self, Foundation};
 use crate::material::library::is_glob;
 use crate::nearest::hint;
@@ -126,6 +127,19 @@ impl Study {
     #[must_use]
     pub fn count(&self) -> usize {
         self.axes.iter().map(Axis::len).product()
+    }
+
+    /// Digest of what varies: of all keys, and of all their values. The scene has a fingerprint of its own.
+    #[must_use]
+    pub fn digest(&self) -> u128 {
+        let text = |(key, value): (usize, &Option<Node>)| {
+            (key, value.as_ref().map(|node| node.value.to_string()))
+        };
+        let rows = |axis: &Axis| -> Vec<Vec<_>> {
+            let rows = 0..axis.len();
+            rows.map(|row| axis.row(row).map(text).collect()).collect()
+        };
+        digest(&(self.keys(), self.axes.iter().map(rows).collect::<Vec<_>>()))
     }
 
     /// All variants.

@@ -133,10 +133,10 @@ fn a_damaged_shard_is_told_by_its_name() {
             "{told}"
         );
     }
-    std::fs::write(&path, b"malus state 2\n...").unwrap();
+    std::fs::write(&path, b"malus state 3\n...").unwrap();
     assert_told(
         &unmerged(&folder, &["out"]),
-        &["is of form 2, this version of malus reads form 1"],
+        &["is of form 3, this version of malus reads form 2"],
     );
 }
 
@@ -259,10 +259,10 @@ fn a_run_goes_on_with_its_own_state_only() {
     }
     let told = refused(&folder, &["run", "room.toml", "-o", "out", "--resume"]);
     assert_told(&told, &["out/checkpoint.malus: is shard 1/2"]);
-    std::fs::write(&state, b"malus state 1\nabc").unwrap();
+    std::fs::write(&state, b"malus state 2\nabc").unwrap();
     let told = refused(&folder, &["run", "room.toml", "-o", "out", "--resume"]);
     assert_told(&told, &["out/checkpoint.malus: is damaged"]);
-    assert_eq!(std::fs::read(&state).unwrap(), b"malus state 1\nabc");
+    assert_eq!(std::fs::read(&state).unwrap(), b"malus state 2\nabc");
 }
 
 /// A directory stands where the file should go, as for a disk that is full or may not be written to.

@@ -1,7 +1,11 @@
 //! Variants that the same walks serve, gathered until there are enough of them.
 
+use anyhow::Result;
 use malus_estimator::{Cohort, REPLICAS};
-use malus_scene::{Estimator, Scene};
+use malus_scene::{Estimator, Fingerprint, Scene, Settings};
+use siphasher::sip128::{Hasher128, SipHasher13};
+use std::hash::Hasher;
+use std::sync::Arc;
 
 /// Variants in one batch, at most: more of them cost as much one by one.
 const MOST: usize = 64;
@@ -32,6 +36,63 @@ pub struct Batch {
     pub variants: Vec<Loaded>,
     /// Whether the walks serve the base too: differences to it are then those of the same walks.
     pub with_base: bool,
+}
+
+impl Batch {
+    /// The base alone: differences to it need it first.
+    pub fn base(base: &Scene) -> Self {
+        Self {
+            cohort: Cohort::of(base),
+            variants: Vec::new(),
+            with_base: true,
+        }
+    }
+
+    /// The scenes that are evaluated, the base first where it is one of them.
+    pub fn scenes<'a>(&'a self, base: &'a Scene) -> Vec<&'a Scene> {
+        let own = self.variants.iter().map(|it| &it.scene);
+        let base = self.with_base.then_some(base);
+        base.into_iter().chain(own).collect()
+    }
+
+    /// How it is computed, with these stopping rules.
+    pub fn settings(&self, base: &Scene, stops: &Settings) -> Settings {
+        let first = match self.with_base {
+            true => base,
+            false => &self.variants[0].scene,
+        };
+        Settings {
+            samples: stops.samples,
+            relative_error: stops.relative_error,
+            seconds: stops.seconds,
+            ..first.settings.clone()
+        }
+    }
+
+    /// Digest of what it is: of all that its sums depend on. `fingerprint` is that of the base.
+    ///
+    /// # Errors
+    /// It cannot be written as bytes.
+    pub fn digest(&self, base: &Scene, fingerprint: &Fingerprint) -> Result<u128> {
+        let one = |it: &Loaded| {
+            let scene = &it.scene;
+            (
+                it.name.clone(),
+                scene.fingerprint_beside(&scene.settings, base, fingerprint),
+            )
+        };
+        let all: Vec<_> = self.variants.iter().map(one).collect();
+        let mut sum = SipHasher13::new();
+        sum.write(&postcard::to_stdvec(&(self.with_base, all))?);
+        Ok(sum.finish128().as_u128())
+    }
+
+    /// Names of its variants that have the base's geometry, and optics for which the base's walks would be bad.
+    pub fn apart(&self, base: &Scene) -> impl Iterator<Item = &str> {
+        let of_base = |it: &&Loaded| Arc::ptr_eq(&it.scene.surfaces, &base.surfaces);
+        let variants = self.variants.iter().filter(|_| !self.with_base);
+        variants.filter(of_base).map(|it| it.name.as_str())
+    }
 }
 
 /// Batches under way.
