@@ -78,18 +78,9 @@ fn compute_whole(
 ) -> anyhow::Result<End> {
     let results = job.compute(part, keeper)?;
     warn(&results.warnings);
-    let mut complete = results.complete;
-    for index in pictured(part, job.scene) {
-        if job.interrupt.asked() {
-            complete = false;
-            break;
-        }
-        job.shoot(part, keeper, index)?;
-        let camera = &job.scene.cameras[index];
-        let taken = part.films[index].developed(camera);
-        complete &= taken.complete;
-        picture::write(&taken, job.scene, job.directory, &camera.name)?;
-    }
+    // A picture that fails costs no reading.
+    let pictures = take_pictures(job, part, keeper);
+    let complete = results.complete && matches!(pictures, Ok(true));
     let circumstances = Circumstances {
         seconds: part.head.seconds,
         threads: part.head.threads,
@@ -103,6 +94,7 @@ fn compute_whole(
         quiet: command.quiet,
     };
     report.write(job.scene, job.settings, &results, &circumstances)?;
+    pictures?;
     if complete {
         job.directory.remove(job.name)?;
         return Ok(End::Complete);
@@ -117,6 +109,23 @@ fn compute_whole(
     }
     warn(&[told]);
     Ok(End::Interrupted)
+}
+
+/// Takes and writes the pictures of all cameras; false where the user did not wait for them.
+fn take_pictures(job: &Job, part: &mut Part, keeper: &mut Keeper) -> anyhow::Result<bool> {
+    for index in pictured(part, job.scene) {
+        if job.interrupt.asked() {
+            return Ok(false);
+        }
+        job.shoot(part, keeper, index)?;
+        let camera = &job.scene.cameras[index];
+        let taken = part.films[index].developed(camera);
+        picture::write(&taken, job.scene, job.directory, &camera.name)?;
+        if !taken.complete {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 /// Computes a shard and leaves it to be merged.

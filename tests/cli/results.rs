@@ -335,3 +335,24 @@ fn a_set_value_takes_the_place_of_the_files() {
         folder.text("black/sensors.csv")
     );
 }
+
+#[test]
+fn a_picture_that_cannot_be_written_costs_no_reading() {
+    let scene = format!(
+        "[[camera]]
+        name = 'view'
+        position = [1, 1, 1.5]
+        look_at = [3, 2, 0.5]
+        width = 8
+        height = 6
+        samples = 1
+        {FURNISHED}"
+    );
+    let folder = Folder::new(scene.as_bytes(), &[("out/", b""), ("out/view.tiff/", b"")]);
+    let output = folder.malus(&["run", "room.toml", "-o", "out"]);
+    assert_eq!(output.status.code(), Some(1));
+    let told = stderr(&output);
+    assert!(told.contains("view.tiff: cannot be written"), "{told}");
+    assert_eq!(rows(&folder.text("out/sensors.csv")).len(), 15);
+    assert_eq!(folder.json("out/summary.json")["complete"], false);
+}
