@@ -1,5 +1,6 @@
 //! Studies: every variant says what a run of it alone would say, and differences are far better known than either side.
 
+mod parquet;
 mod parts;
 
 use crate::cli::{Folder, ROOM, stderr};

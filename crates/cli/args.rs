@@ -50,15 +50,19 @@ Examples:
   malus merge results/office                       all shards lie in one directory
   malus merge a/office b/office -o results/office  they were brought together from two machines
 
-The scene is read again, from where it was when the shards were computed or from --scene, and has to be the same: the \
-results have the bytes of a run in one piece. Shards stay where they are.
+Scene or study is read again, from where it was when the shards were computed or from --scene, and has to be the same: the \
+results have the bytes of one piece. Shards stay where they are.
 
-Exit status: 0 done, 1 nothing can be written, 2 a shard is missing, there twice, unfinished, damaged or of another run.";
+Exit status: 0 done, 1 nothing can be written or a variant failed, 2 a shard is missing, there twice, unfinished, \
+damaged or of another run.";
 
 const SWEEP_EXAMPLES: &str = "\
 Examples:
   malus sweep study-floor.toml                    every variant of the study; results go to results/study-floor
   malus sweep study.toml --samples 4096 --sensors
+  malus sweep study.toml --resume                           goes on after a reboot
+  malus sweep study.toml --samples 65536 --shard 3/8        one part of eight, for malus merge
+  malus sweep study.toml --samples 65536 --submit slurm --shards 8 --wait
 
 A study file names a scene and what varies in it, by the keys that --set takes:
   scene = \"office.toml\"
@@ -73,7 +77,7 @@ Several tables combine, each row of one with each of another. All variants take 
 gives the base, the scene as it stands.
 
 Results: variants.csv (a row a variant, written as it is finished), study.json (which variants differ, a ranking, \
-sensitivities), a picture <sensor>-trade.svg of each sensor.
+sensitivities), a picture <sensor>-trade.svg of each sensor; with --parquet variants.parquet.
 
 Exit status: 0 done, 1 a variant failed (the others are finished), 2 bad arguments, a bad scene or a bad study, 130 \
 interrupted.";
@@ -130,7 +134,7 @@ pub enum Command {
     /// Evaluate design variants of one scene, with the differences between them: which differ, and which key matters
     #[command(after_help = SWEEP_EXAMPLES)]
     Sweep(Box<Sweep>),
-    /// Join the shards of a run: writes the tables, plans, pictures and summary of the whole
+    /// Join the shards of a run or of a study: writes the results of the whole
     #[command(after_help = MERGE_EXAMPLES)]
     Merge(Merge),
     /// Read a scene and say what was understood and what is wrong with it; compute nothing
@@ -222,7 +226,7 @@ pub struct Sweep {
 /// `malus merge`.
 #[derive(Args, Debug)]
 pub struct Merge {
-    /// Directories with shards, as `malus run --shard` writes them
+    /// Directories with shards, as `malus run --shard` and `malus sweep --shard` write them
     #[arg(value_name = "DIR", required = true)]
     pub shards: Vec<PathBuf>,
 
@@ -230,8 +234,8 @@ pub struct Merge {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// The scene file, where it is no longer where the shards were computed
-    #[arg(long, value_name = "SCENE.toml")]
+    /// The scene file or study file, where it is no longer where the shards were computed
+    #[arg(long, value_name = "FILE")]
     pub scene: Option<PathBuf>,
 
     /// Draw no plans and write no pictures

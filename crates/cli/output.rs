@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result};
 use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// A directory that can be written to.
@@ -45,24 +45,29 @@ impl Directory {
     pub fn write_by(
         &self,
         name: &str,
-        fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
+        fill: impl FnOnce(&mut BufWriter<Growing>) -> Result<()>,
     ) -> Result<()> {
-        let path = self.0.join(name);
-        let temporary = self.temporary(name);
         let filled = || -> Result<()> {
-            let mut file = BufWriter::new(File::create(&temporary)?);
+            let mut file = BufWriter::new(self.begin(name)?);
             fill(&mut file)?;
             file.into_inner()
                 .map_err(|error| error.into_error())?
-                .sync_all()?;
-            Ok(fs::rename(&temporary, &path)?)
+                .finish()
         };
-        let written = filled();
-        if written.is_err() {
-            // The first error is the one to report.
-            let _ = fs::remove_file(&temporary);
-        }
-        written.with_context(|| format!("{}: cannot be written", path.display()))
+        filled().with_context(|| format!("{}: cannot be written", self.0.join(name).display()))
+    }
+
+    /// Begins a file beside its place, to which [`Growing::finish`] moves it.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn begin(&self, name: &str) -> Result<Growing> {
+        let temporary = self.temporary(name);
+        Ok(Growing {
+            file: File::create(&temporary)?,
+            temporary,
+            path: self.0.join(name),
+        })
     }
 
     /// A file that grows piece by piece in its place, and holds what there is at any moment.
@@ -100,6 +105,48 @@ impl Directory {
     /// A name of our own, so that two runs into one directory do not mix their bytes.
     fn temporary(&self, name: &str) -> PathBuf {
         self.0.join(format!(".{name}.{}.part", std::process::id()))
+    }
+}
+
+/// A file that is not in its place yet; left alone it is removed.
+#[derive(Debug)]
+pub struct Growing {
+    file: File,
+    temporary: PathBuf,
+    path: PathBuf,
+}
+
+impl Growing {
+    /// Moves the file to its place.
+    ///
+    /// # Errors
+    /// It cannot be written; an earlier file of that name then stays as it was.
+    pub fn finish(self) -> Result<()> {
+        self.file.sync_all()?;
+        Ok(fs::rename(&self.temporary, &self.path)?)
+    }
+}
+
+impl Write for Growing {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Seek for Growing {
+    fn seek(&mut self, place: SeekFrom) -> std::io::Result<u64> {
+        self.file.seek(place)
+    }
+}
+
+impl Drop for Growing {
+    fn drop(&mut self) {
+        // Where it is finished it is no longer there; and of errors the first one is to be reported.
+        let _ = fs::remove_file(&self.temporary);
     }
 }
 

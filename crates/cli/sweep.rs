@@ -1,6 +1,8 @@
 //! `malus sweep`: evaluate the variants of a study, or a shard of it, and say how they differ.
 
 mod batch;
+#[cfg_attr(not(feature = "parquet"), path = "sweep/without_parquet.rs")]
+mod columnar;
 mod course;
 mod job;
 pub mod merge;
@@ -37,7 +39,9 @@ use std::time::Instant;
 pub fn sweep(command: &args::Sweep) -> Result<End, Failure> {
     let threads = command.computing.threads()?;
     let interval = command.portion.interval().map_err(Failure::input)?;
-    variants::check(command.parquet).map_err(Failure::input)?;
+    if command.parquet {
+        columnar::check().map_err(Failure::input)?;
+    }
     let asked = Asked::load(command)?;
     let head = asked.head(command);
     if command.cluster.submit.is_some() {

@@ -4,7 +4,7 @@ use super::batch::Batch;
 use super::course::{Course, Step};
 use super::outcomes::Outcomes;
 use super::results::{Made, Results, Wanted};
-use super::{Asked, shard, variants};
+use super::{Asked, columnar, shard};
 use crate::args;
 use crate::conclusion::Computed;
 use crate::failure::Failure;
@@ -34,7 +34,9 @@ pub fn merge(command: &args::Merge, shards: &Shards) -> Result<(), Failure> {
         .zip(shards.any().allocation.as_ref())
         .context("the shards say nothing of a study")
         .map_err(Failure::input)?;
-    variants::check(studied.parquet).map_err(Failure::input)?;
+    if studied.parquet {
+        columnar::check().map_err(Failure::input)?;
+    }
     let path = asked_scene(command, &head).map_err(Failure::input)?;
     let told = args::Sweep::told(&path, &head.words);
     let asked = Asked::load(&told.map_err(|error| Failure::input(error.into()))?)?;

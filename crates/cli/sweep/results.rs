@@ -3,7 +3,7 @@
 use super::batch::Batch;
 use super::course::Failed;
 use super::outcomes::{Gave, Kept, Outcomes};
-use super::variants::Variants;
+use super::variants::{Row, Variants};
 use crate::conclusion::{self, Circumstances, Computed};
 use crate::findings::Finding;
 use crate::outcome::{Outcome, measured};
@@ -49,7 +49,8 @@ pub struct Results<'a> {
     study: &'a Study,
     base: &'a Base,
     wanted: &'a Wanted<'a>,
-    table: Variants,
+    /// Until the results are concluded.
+    table: Option<Variants>,
     outcomes: Outcomes,
     /// Names of variants that failed.
     failed: Vec<String>,
@@ -74,7 +75,7 @@ impl<'a> Results<'a> {
             study,
             base,
             wanted,
-            table: Variants::create(wanted, study, base)?,
+            table: Some(Variants::create(wanted, study, base)?),
             outcomes,
             failed: Vec::new(),
             batches: 0,
@@ -161,7 +162,7 @@ impl<'a> Results<'a> {
         };
         match row {
             Ok(row) => {
-                self.table.add(&row)?;
+                self.write_row(&row)?;
                 self.outcomes.add(kept);
                 Ok(())
             }
@@ -186,9 +187,16 @@ impl<'a> Results<'a> {
         eprintln!("error: variant {name}: {error:#}");
         let groups = self.base.scene.sensors.len();
         let row = Variants::failed_row(&name, &values, groups);
-        self.table.add(&row)?;
+        self.write_row(&row)?;
         self.failed.push(name);
         Ok(())
+    }
+
+    fn write_row(&mut self, row: &Row) -> Result<()> {
+        match &mut self.table {
+            Some(table) => table.add(row),
+            None => Ok(()),
+        }
     }
 
     /// Says what the variants show, in files and on stdout.
@@ -196,6 +204,9 @@ impl<'a> Results<'a> {
     /// # Errors
     /// Something cannot be written.
     pub fn conclude(&mut self, made: &Made) -> Result<()> {
+        if let Some(table) = self.table.take() {
+            table.finish()?;
+        }
         let scene = &self.base.scene;
         let Wanted {
             directory, title, ..

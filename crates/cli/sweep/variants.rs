@@ -1,23 +1,12 @@
-//! `variants.csv`: one row a variant, written as it is finished.
+//! `variants.csv`: one row a variant, written as it is finished; and the same as Parquet.
 
+use super::columnar::Columnar;
 use super::results::Wanted;
 use crate::number::exact;
 use crate::outcome::{Groups, Outcome, Quantity};
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use malus_scene::{Base, Scene, Study};
 use std::fs::File;
-
-/// Makes sure that the table can be written as Parquet, if it is to be.
-///
-/// # Errors
-/// The program was built without the feature.
-pub fn check(parquet: bool) -> Result<()> {
-    ensure!(
-        !parquet,
-        "--parquet: this malus was built without it; build it with cargo install --path malus --features parquet"
-    );
-    Ok(())
-}
 
 /// Columns of one sensor group, each after the group's name.
 const GROUP: [&str; 7] = [
@@ -43,8 +32,11 @@ pub struct Row {
     pub status: &'static str,
 }
 
-/// The file, open.
-pub struct Variants(csv::Writer<File>);
+/// The file, open, and the same as Parquet where it is wanted.
+pub struct Variants {
+    file: csv::Writer<File>,
+    columnar: Option<Columnar>,
+}
 
 impl Variants {
     /// A file with its header in the directory.
@@ -52,15 +44,19 @@ impl Variants {
     /// # Errors
     /// It cannot be written.
     pub fn create(wanted: &Wanted, study: &Study, base: &Base) -> Result<Self> {
-        check(wanted.parquet)?;
-        let file = wanted.directory.growing("variants.csv")?;
-        let mut variants = Self(csv::Writer::from_writer(file));
-        let groups = numbers(&base.scene);
-        let keys = study.keys().into_iter();
+        let numbers: Vec<String> = numbers(&base.scene).collect();
+        let columnar = wanted
+            .parquet
+            .then(|| Columnar::create(wanted.directory, study, base, &numbers));
+        let mut variants = Self {
+            file: csv::Writer::from_writer(wanted.directory.growing("variants.csv")?),
+            columnar: columnar.transpose()?,
+        };
         let columns = std::iter::once("variant".to_owned())
-            .chain(keys)
-            .chain(groups);
-        variants.write(columns.chain(["status".to_owned()]).collect())?;
+            .chain(study.keys())
+            .chain(numbers)
+            .chain(["status".to_owned()]);
+        variants.write(columns.collect())?;
         Ok(variants)
     }
 
@@ -121,13 +117,28 @@ impl Variants {
         let name = std::iter::once(Ok(row.name.clone()));
         let fields = name.chain(values).chain(numbers);
         let fields = fields.chain([Ok(row.status.to_owned())]);
-        self.write(fields.collect::<Result<_>>()?)
+        self.write(fields.collect::<Result<_>>()?)?;
+        match &mut self.columnar {
+            Some(columnar) => columnar.add(row),
+            None => Ok(()),
+        }
+    }
+
+    /// Ends the files.
+    ///
+    /// # Errors
+    /// They cannot be written.
+    pub fn finish(self) -> Result<()> {
+        match self.columnar {
+            Some(columnar) => columnar.finish(),
+            None => Ok(()),
+        }
     }
 
     fn write(&mut self, row: Vec<String>) -> Result<()> {
-        self.0
+        self.file
             .write_record(row)
-            .and_then(|()| Ok(self.0.flush()?))
+            .and_then(|()| Ok(self.file.flush()?))
             .context("variants.csv: cannot be written")
     }
 }

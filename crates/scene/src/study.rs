@@ -4,7 +4,7 @@ mod axis;
 mod list;
 mod sample;
 
-use crate::document::Node;
+use crate::document::{Node, Value};
 use crate::error::Error;
 use crate::file::SceneFile;
 use crate::fingerprint::digest;
@@ -127,6 +127,19 @@ impl Study {
     #[must_use]
     pub fn count(&self) -> usize {
         self.axes.iter().map(Axis::len).product()
+    }
+
+    /// Whether a key takes numbers only, for each key.
+    #[must_use]
+    pub fn numeric(&self) -> Vec<bool> {
+        let mut numeric = vec![true; self.keys.len()];
+        for axis in &self.axes {
+            for (key, value) in (0..axis.len()).flat_map(|row| axis.row(row)) {
+                let value = value.as_ref().map(|node| &node.value);
+                numeric[key] &= matches!(value, None | Some(Value::Integer(_) | Value::Number(_)));
+            }
+        }
+        numeric
     }
 
     /// Digest of what varies: of all keys, and of all their values. The scene has a fingerprint of its own.
