@@ -417,7 +417,7 @@ mod tests {
         assert_eq!(first(None, 1.0, 10), all);
         assert_eq!(first(Some(0.3), 1.0, 10), all);
         // Where less is expected to do, a run is judged once more, earlier.
-        assert_eq!(first(Some(1.5), 2.0, 3), [4, 16, 20]);
-        assert_eq!(first(Some(1.49), 2.0, 3), [8, 16, 20]);
+        assert_eq!(first(Some(2.5), 2.0, 3), [4, 16, 20]);
+        assert_eq!(first(Some(2.49), 2.0, 3), [8, 16, 20]);
     }
 }
