@@ -3,9 +3,9 @@
 use crate::closed::measured;
 use std::time::Instant;
 
-/// One setting: variance × time of the centre's S0, relative to the square of its value, and its value.
-fn cost(a: &str, settings: &str) -> (f64, f64, f64) {
-    let toml = format!(
+/// The paper's room, with a sensor in the middle of its floor.
+fn room(a: &str) -> String {
+    format!(
         "[[shape]]
         kind = 'box'
         min = [0, 0, 0]
@@ -27,11 +27,40 @@ fn cost(a: &str, settings: &str) -> (f64, f64, f64) {
         [[sensor]]
         name = 'centre'
         points = [[0.5, 0.5, 0]]
-        normal = [0, 0, 1]
-        [run]
-        compare = []
-        {settings}"
-    );
+        normal = [0, 0, 1]"
+    )
+}
+
+/// Sobolev's planes, wide enough that their rim does not matter, with a sensor at a distance of 1 from the source's foot.
+fn planes() -> String {
+    "[[shape]]
+    kind = 'rectangle'
+    origin = [-50, -50, 0]
+    u = [100, 0, 0]
+    v = [0, 100, 0]
+    material = 'plane'
+    [[shape]]
+    kind = 'rectangle'
+    origin = [-50, -50, 1]
+    u = [0, 100, 0]
+    v = [100, 0, 0]
+    material = 'plane'
+    [material.plane]
+    rho = 0.5
+    [[source]]
+    kind = 'point'
+    position = [0, 0, 0.5]
+    intensity = 1
+    [[sensor]]
+    name = 'aside'
+    points = [[1, 0, 0]]
+    normal = [0, 0, 1]"
+        .into()
+}
+
+/// One setting: variance × time of a scene's first point, relative to the square of its value, and its value.
+fn cost(scene: &str, settings: &str) -> (f64, f64, f64) {
+    let toml = format!("{scene}\n[run]\ncompare = []\n{settings}");
     let started = Instant::now();
     let reading = measured(&toml)[0];
     let seconds = started.elapsed().as_secs_f64();
@@ -47,14 +76,19 @@ pub fn print() {
     );
     println!("| scene, point | cell, m | bias of the cell | direct / local | direct / auto |");
     println!("|---|---|---|---|---|");
-    for a in ["0", "0.6"] {
-        let (local, _, _) = cost(a, "estimator = 'local'\nsamples = 1048576");
-        let (auto, exact, _) = cost(a, "estimator = 'auto'\nsamples = 524288");
+    let scenes = [
+        ("Sobolev's planes, ρ = 0.5, r = 1", planes()),
+        ("paper's room, a = 0, centre of the floor", room("0")),
+        ("paper's room, a = 0.6, centre of the floor", room("0.6")),
+    ];
+    for (name, scene) in &scenes {
+        let (local, _, _) = cost(scene, "estimator = 'local'\nsamples = 1048576");
+        let (auto, exact, _) = cost(scene, "estimator = 'auto'\nsamples = 524288");
         for cell in ["0.2", "0.1", "0.05", "0.02"] {
             let settings = format!("estimator = 'direct'\ncell = {cell}\nsamples = 8388608");
-            let (direct, value, relative) = cost(a, &settings);
+            let (direct, value, relative) = cost(scene, &settings);
             println!(
-                "| paper's room, a = {a}, centre of the floor | {cell} | {:+.2} ± {:.2} % | {:.0} | {:.0} |",
+                "| {name} | {cell} | {:+.2} ± {:.2} % | {:.0} | {:.0} |",
                 100.0 * (value / exact - 1.0),
                 100.0 * relative,
                 direct / local,
