@@ -96,6 +96,26 @@ impl Folder {
         self.command(words).output().unwrap()
     }
 
+    /// What is said of a command line that is refused as a bad input, with nothing written to `merged`.
+    #[track_caller]
+    pub fn refused(&self, words: &[&str]) -> String {
+        let output = self.malus(words);
+        let told = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(
+            told.starts_with("error: ") && !told.contains("panicked"),
+            "{told}"
+        );
+        assert!(!self.path("merged").exists(), "results beside an error");
+        told
+    }
+
+    /// What `malus merge` says of directories whose shards cannot be joined.
+    #[track_caller]
+    pub fn unmerged(&self, directories: &[&str]) -> String {
+        self.refused(&[&["merge"], directories, &["-o", "merged"]].concat())
+    }
+
     /// `malus run room.toml` with results in `name` and further words, which has to succeed.
     #[track_caller]
     pub fn run(&self, name: &str, words: &[&str]) -> Output {

@@ -3,11 +3,13 @@
 //! The file is a line that names its form, then head, sums, films and shares of walks, each as postcard writes it, then a
 //! SipHash-1-3 of all that stands before, 16 bytes. A study has a journal beside it, of what is finished.
 
+use crate::computing::Computing;
 use crate::journal::Extent;
 use crate::output::Directory;
+use crate::portion::rounded_up;
 use anyhow::{Context, Error, Result, anyhow, bail, ensure};
 use malus_estimator::{Allocation, Film, Shard, State};
-use malus_scene::Fingerprint;
+use malus_scene::{Fingerprint, Scene, Settings};
 use serde::{Deserialize, Serialize};
 use siphasher::sip128::{Hasher128, SipHasher13};
 use std::fs::{self, File};
@@ -101,6 +103,32 @@ pub struct Part {
 }
 
 impl Head {
+    /// What a file says at its beginning of the run or the study that computes a scene, read from `path`.
+    pub fn new(
+        path: &Path,
+        scene: &Scene,
+        settings: &Settings,
+        computing: &Computing,
+        no_pictures: bool,
+    ) -> Self {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        Self {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            fingerprint: scene.fingerprint(settings),
+            shard: Shard::WHOLE,
+            goal: settings.samples.map(rounded_up),
+            samples: 0,
+            shot: 0.0,
+            complete: false,
+            seconds: 0.0,
+            threads: 1,
+            scene: path.to_string_lossy().into_owned(),
+            words: computing.words(),
+            pictures: !no_pictures,
+            study: None,
+        }
+    }
+
     /// Checks that a file goes on with this run.
     ///
     /// # Errors

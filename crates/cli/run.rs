@@ -8,7 +8,6 @@ use crate::job::Job;
 use crate::keeper::Keeper;
 use crate::output::Directory;
 use crate::part::{CHECKPOINT, Head, Part};
-use crate::portion::rounded_up;
 use crate::report::{Report, print, warn};
 use crate::summary::Circumstances;
 use crate::{picture, stop};
@@ -197,21 +196,15 @@ fn pictured(part: &Part, scene: &Scene) -> std::ops::Range<usize> {
 
 /// What a file of this run says of itself at its beginning.
 fn head(command: &args::Run, scene: &Scene, settings: &Settings, shard: Option<Shard>) -> Head {
-    let path = std::path::absolute(&command.scene).unwrap_or_else(|_| command.scene.clone());
     Head {
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        fingerprint: scene.fingerprint(settings),
         shard: shard.unwrap_or(Shard::WHOLE),
-        goal: settings.samples.map(rounded_up),
-        samples: 0,
-        shot: 0.0,
-        complete: false,
-        seconds: 0.0,
-        threads: 1,
-        scene: path.to_string_lossy().into_owned(),
-        words: command.computing.words(),
-        pictures: !command.no_pictures,
-        study: None,
+        ..Head::new(
+            &command.scene,
+            scene,
+            settings,
+            &command.computing,
+            command.no_pictures,
+        )
     }
 }
 

@@ -20,7 +20,6 @@ use crate::journal::Journal;
 use crate::keeper::Keeper;
 use crate::output::Directory;
 use crate::part::{CHECKPOINT, Head, Part, Studied};
-use crate::portion::rounded_up;
 use crate::progress::Reporter;
 use crate::report::warn;
 use crate::run::{End, directory, pool};
@@ -162,20 +161,7 @@ impl Asked {
 
     /// What a file of this study says of itself at its beginning.
     fn head(&self, command: &args::Sweep) -> Head {
-        let path = std::path::absolute(&self.path).unwrap_or_else(|_| self.path.clone());
         Head {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            fingerprint: self.base.scene.fingerprint(&self.settings),
-            shard: Shard::WHOLE,
-            goal: self.settings.samples.map(rounded_up),
-            samples: 0,
-            shot: 0.0,
-            complete: false,
-            seconds: 0.0,
-            threads: 1,
-            scene: path.to_string_lossy().into_owned(),
-            words: command.computing.words(),
-            pictures: !command.no_pictures,
             study: Some(Studied {
                 digest: self.study.digest(),
                 rule: stop::words(&self.settings),
@@ -185,6 +171,13 @@ impl Asked {
                 finished: Default::default(),
                 share: 0.0,
             }),
+            ..Head::new(
+                &self.path,
+                &self.base.scene,
+                &self.settings,
+                &command.computing,
+                command.no_pictures,
+            )
         }
     }
 }

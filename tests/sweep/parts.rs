@@ -63,20 +63,6 @@ fn shards(folder: &Folder, name: &str, shards: &[&str], words: &[&str]) {
     }
 }
 
-/// What `malus merge` says of directories that it refuses, without writing anything.
-#[track_caller]
-fn unmerged(folder: &Folder, directories: &[&str]) -> String {
-    let output = folder.malus(&[&["merge"], directories, &["-o", "merged"]].concat());
-    let told = stderr(&output);
-    assert_eq!(output.status.code(), Some(2), "{told}");
-    assert!(
-        told.starts_with("error: ") && !told.contains("panicked"),
-        "{told}"
-    );
-    assert!(!folder.path("merged").exists(), "results beside an error");
-    told
-}
-
 #[test]
 fn merged_shards_of_a_study_have_the_bytes_of_one_piece() {
     for (study, expected) in [(STUDY, Some(1)), (MOVED, Some(0))] {
@@ -313,12 +299,12 @@ fn shards_that_do_not_belong_together_are_refused_by_name() {
     let folder = folder(MOVED, &[]);
     shards(&folder, "out", &["1/2"], &[]);
     assert_told(
-        &unmerged(&folder, &["out"]),
+        &folder.unmerged(&["out"]),
         &["of 2 shards", "missing: 2", "malus sweep"],
     );
     shards(&folder, "twice", &["1/2", "2/2"], &[]);
     assert_told(
-        &unmerged(&folder, &["out", "twice"]),
+        &folder.unmerged(&["out", "twice"]),
         &[
             "twice/shard-01-of-02.malus: shard 1/2 is there twice",
             "out/shard-01-of-02.malus",
@@ -333,21 +319,21 @@ fn shards_that_do_not_belong_together_are_refused_by_name() {
         shards(&folder, name, &["2/2"], words);
         let file =
             format!("{name}/shard-02-of-02.malus: is of another run than out/shard-01-of-02.malus");
-        assert_told(&unmerged(&folder, &["out", name]), &[&file, differs]);
+        assert_told(&folder.unmerged(&["out", name]), &[&file, differs]);
     }
     folder.run(
         "run",
         &["--shard", "2/2", "--set", "material.plaster.rho=0.5"],
     );
     assert_told(
-        &unmerged(&folder, &["out", "run"]),
+        &folder.unmerged(&["out", "run"]),
         &["run/shard-02-of-02.malus: ", "is of a run"],
     );
     let study = folder.text("study.toml");
     std::fs::write(folder.path("study.toml"), study.replace("2.7", "2.8")).unwrap();
     shards(&folder, "study", &["2/2"], &[]);
     assert_told(
-        &unmerged(&folder, &["out", "study"]),
+        &folder.unmerged(&["out", "study"]),
         &["study/shard-02-of-02.malus: ", "another study"],
     );
     shards(&folder, "out", &["2/2"], &[]);
@@ -355,7 +341,7 @@ fn shards_that_do_not_belong_together_are_refused_by_name() {
     shards(&folder, "out", &["1/2"], &[]);
     std::fs::write(folder.path("study.toml"), study).unwrap();
     assert_told(
-        &unmerged(&folder, &["out"]),
+        &folder.unmerged(&["out"]),
         &["study.toml: is not the study that"],
     );
 }
@@ -375,12 +361,12 @@ fn a_damaged_shard_of_a_study_is_refused_by_name() {
         for bytes in spoiled.into_iter().chain(cut) {
             std::fs::write(folder.path(name), bytes).unwrap();
             assert_told(
-                &unmerged(&folder, &["out"]),
+                &folder.unmerged(&["out"]),
                 &[&format!("error: {name}: is ")],
             );
         }
         std::fs::remove_file(folder.path(name)).unwrap();
-        let told = unmerged(&folder, &["out"]);
+        let told = folder.unmerged(&["out"]);
         assert!(
             told.contains("missing: 2") || told.contains(&format!("{name}: cannot be read")),
             "{told}"

@@ -277,7 +277,8 @@ impl<'a> Walk<'a> {
         }
         let [lobe, u, v, split] = self.uniforms.at(self.depth, Purpose::Scatter);
         self.origin = vertex.position;
-        let mirrored = (self.direction + normal * (2.0 * meeting.angle.0)).normalize();
+        let arriving = self.direction;
+        let mirrored = || (arriving + normal * (2.0 * meeting.angle.0)).normalize();
         if let (Role::Looking(lookout), 1) = (&self.role, self.depth) {
             let probability = odds.mirrored(true);
             if split < probability {
@@ -285,7 +286,7 @@ impl<'a> Walk<'a> {
                 lookout.chain.reflect(meeting.facet, probability);
                 lookout.aimed(density);
                 let vertex = Vertex {
-                    onward: mirrored,
+                    onward: mirrored(),
                     matrix: mirror,
                     emission: 0.0,
                     connections: 0..0,
@@ -326,7 +327,7 @@ impl<'a> Walk<'a> {
             vertex.event = Event::Mirror;
             vertex.probability = odds.mirror;
             vertex.matrix = mirror;
-            self.direction = mirrored;
+            self.direction = mirrored();
             match &mut self.role {
                 Role::Aimed(_) => {}
                 Role::Launched(launched) => launched.chain.reflect(meeting.facet, odds.mirror),

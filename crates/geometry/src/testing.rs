@@ -90,3 +90,15 @@ pub(crate) fn cube(centre: DVec3, side: f64, n: u32) -> Surfaces {
     let edges = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * side);
     surfaces(&room(centre - 0.5 * side, edges, [[n, n]; 6]))
 }
+
+/// Triangles anywhere in the cube from −1 to 1 and a little beyond, each of up to twice the size.
+pub(crate) fn soup(seed: u64, count: u32, size: f64) -> Mesh {
+    let mut uniform = Uniform(seed);
+    let mut mesh = Mesh::default();
+    for index in 0..count {
+        let place = uniform.point();
+        let positions = [(); 3].map(|()| place + size * uniform.point());
+        mesh.append(&positions, &[[0, 1, 2]], index, 0);
+    }
+    mesh
+}

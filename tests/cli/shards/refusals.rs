@@ -3,27 +3,6 @@
 use super::super::assert_told;
 use super::*;
 
-/// `malus merge` with shards that cannot be joined: what is said of them.
-#[track_caller]
-fn unmerged(folder: &Folder, directories: &[&str]) -> String {
-    let words = [&["merge"], directories, &["-o", "merged"]].concat();
-    refused(folder, &words)
-}
-
-/// What is said of a command line that is refused as a bad input, with nothing written.
-#[track_caller]
-fn refused(folder: &Folder, words: &[&str]) -> String {
-    let output = folder.malus(words);
-    let told = stderr(&output);
-    assert_eq!(output.status.code(), Some(2), "{told}");
-    assert!(
-        told.starts_with("error: ") && !told.contains("panicked"),
-        "{told}"
-    );
-    assert!(!folder.path("merged").exists(), "results beside an error");
-    told
-}
-
 /// A folder with both shards of the plain room in `out`.
 fn halves() -> Folder {
     let folder = Folder::new(ROOM.as_bytes(), &[]);
@@ -36,18 +15,18 @@ fn missing_shards_are_told_by_their_numbers() {
     let folder = Folder::new(ROOM.as_bytes(), &[("empty/", b"")]);
     shards(&folder, "out", &["1/4", "3/4"], &[]);
     assert_told(
-        &unmerged(&folder, &["out"]),
+        &folder.unmerged(&["out"]),
         &["of 4 shards", "missing: 2, 4", "--shard I/4"],
     );
-    assert_told(&unmerged(&folder, &["empty"]), &["empty: holds no shards"]);
-    assert_told(&unmerged(&folder, &["absent"]), &["absent: cannot be read"]);
+    assert_told(&folder.unmerged(&["empty"]), &["empty: holds no shards"]);
+    assert_told(&folder.unmerged(&["absent"]), &["absent: cannot be read"]);
 }
 
 #[test]
 fn a_shard_that_is_there_twice_is_told_with_both_files() {
     let folder = halves();
     shards(&folder, "other", &["2/2"], &[]);
-    let told = unmerged(&folder, &["out", "other"]);
+    let told = folder.unmerged(&["out", "other"]);
     assert_told(
         &told,
         &[
@@ -79,7 +58,7 @@ fn a_shard_of_another_run_is_told_with_what_differs() {
     ] {
         shards(&folder, name, &[shard], words);
         let file = format!("shard-{}.malus", shard.replace('/', "-of-0"));
-        let told = unmerged(&folder, &["out", name]);
+        let told = folder.unmerged(&["out", name]);
         let file = format!("{name}/{}", file.replace("shard-2", "shard-02"));
         assert_told(
             &told,
@@ -101,7 +80,7 @@ fn a_scene_that_has_changed_since_is_refused() {
     )
     .unwrap();
     assert_told(
-        &unmerged(&folder, &["out"]),
+        &folder.unmerged(&["out"]),
         &["room.toml: is not the scene that the shards were computed of: they differ in materials"],
     );
 }
@@ -123,7 +102,7 @@ fn a_damaged_shard_is_told_by_its_name() {
     spoiled.push([&whole[..], b"\0"].concat());
     for bytes in spoiled {
         std::fs::write(&path, bytes).unwrap();
-        let told = unmerged(&folder, &["out"]);
+        let told = folder.unmerged(&["out"]);
         assert!(
             told.starts_with("error: out/shard-02-of-02.malus: is "),
             "{told}"
@@ -135,7 +114,7 @@ fn a_damaged_shard_is_told_by_its_name() {
     }
     std::fs::write(&path, b"malus state 3\n...").unwrap();
     assert_told(
-        &unmerged(&folder, &["out"]),
+        &folder.unmerged(&["out"]),
         &["is of form 3, this version of malus reads form 2"],
     );
 }
@@ -165,7 +144,7 @@ fn a_shard_that_is_not_finished_is_told_by_its_name() {
     child.kill().unwrap();
     child.wait().unwrap();
     assert_told(
-        &unmerged(&folder, &["out"]),
+        &folder.unmerged(&["out"]),
         &[
             "out/shard-01-of-01.malus: is not finished",
             "of 1000000000 samples",
@@ -173,20 +152,17 @@ fn a_shard_that_is_not_finished_is_told_by_its_name() {
         ],
     );
     // Fewer samples than it has taken cannot be made of it.
-    let told = refused(
-        &folder,
-        &[
-            "run",
-            "room.toml",
-            "-o",
-            "out",
-            "--samples",
-            "64",
-            "--shard",
-            "1/1",
-            "--resume",
-        ],
-    );
+    let told = folder.refused(&[
+        "run",
+        "room.toml",
+        "-o",
+        "out",
+        "--samples",
+        "64",
+        "--shard",
+        "1/1",
+        "--resume",
+    ]);
     assert_told(
         &told,
         &["out/shard-01-of-01.malus: holds ", "and 64 are asked for"],
@@ -200,10 +176,7 @@ fn a_shard_needs_samples_and_no_other_rule() {
         &[],
     );
     let told = |words: &[&str]| {
-        let told = refused(
-            &folder,
-            &[&["run", "room.toml", "-o", "merged"], words].concat(),
-        );
+        let told = folder.refused(&[&["run", "room.toml", "-o", "merged"], words].concat());
         assert_told(&told, &[&words[..2].join(" ")]);
         told
     };
@@ -247,7 +220,7 @@ fn a_run_goes_on_with_its_own_state_only() {
         (&["--set", "shape.0.max=[4,3,2.6]"], "differ in geometry"),
     ] {
         let words = [&["run", "room.toml", "-o", "out", "--resume"], words].concat();
-        let told = refused(&folder, &words);
+        let told = folder.refused(&words);
         assert_told(
             &told,
             &[
@@ -257,10 +230,10 @@ fn a_run_goes_on_with_its_own_state_only() {
             ],
         );
     }
-    let told = refused(&folder, &["run", "room.toml", "-o", "out", "--resume"]);
+    let told = folder.refused(&["run", "room.toml", "-o", "out", "--resume"]);
     assert_told(&told, &["out/checkpoint.malus: is shard 1/2"]);
     std::fs::write(&state, b"malus state 2\nabc").unwrap();
-    let told = refused(&folder, &["run", "room.toml", "-o", "out", "--resume"]);
+    let told = folder.refused(&["run", "room.toml", "-o", "out", "--resume"]);
     assert_told(&told, &["out/checkpoint.malus: is damaged"]);
     assert_eq!(std::fs::read(&state).unwrap(), b"malus state 2\nabc");
 }

@@ -108,7 +108,7 @@ impl Boxes {
     /// Tries the triangles that a ray may cross, roughly from the nearest on.
     #[inline]
     pub fn walk(&self, frame: &Frame, line: &Line, reach: f32, search: &mut impl Visit) {
-        let ray = || Ray {
+        let ray = |reach| Ray {
             tmax: reach,
             ..frame.ray(line)
         };
@@ -122,14 +122,12 @@ impl Boxes {
                 search,
             }),
             Self::Bvh2(tree) => {
-                tree.ray_traverse(ray(), &mut hit, |ray, place| {
+                tree.ray_traverse(ray(reach), &mut hit, |ray, place| {
                     search.visit(place, ray.tmax, false)
                 });
             }
             Self::Cwbvh(tree) => {
-                let mut ray = ray();
-                ray.tmax = reach.max(SHORTEST);
-                tree.ray_traverse(ray, &mut hit, |ray, place| {
+                tree.ray_traverse(ray(reach.max(SHORTEST)), &mut hit, |ray, place| {
                     search.visit(place, ray.tmax, false).max(SHORTEST)
                 });
             }
@@ -142,7 +140,7 @@ impl Boxes {
     /// Tries the triangles that a ray may cross in any order, until there is one.
     #[inline]
     pub fn walk_to_any(&self, frame: &Frame, line: &Line, reach: f32, search: &mut impl Visit) {
-        let ray = || Ray {
+        let ray = |reach| Ray {
             tmax: reach,
             ..frame.ray(line)
         };
@@ -155,12 +153,14 @@ impl Boxes {
                 search,
             }),
             Self::Bvh2(tree) => {
-                tree.ray_traverse_miss(ray(), |ray, place| search.visit(place, ray.tmax, false));
+                tree.ray_traverse_miss(ray(reach), |ray, place| {
+                    search.visit(place, ray.tmax, false)
+                });
             }
             Self::Cwbvh(tree) => {
-                let mut ray = ray();
-                ray.tmax = reach.max(SHORTEST);
-                tree.ray_traverse_miss(ray, |ray, place| search.visit(place, ray.tmax, false));
+                tree.ray_traverse_miss(ray(reach.max(SHORTEST)), |ray, place| {
+                    search.visit(place, ray.tmax, false)
+                });
             }
             Self::List(count) => {
                 (0..*count).any(|place| search.visit(place, reach, false) <= ENOUGH);

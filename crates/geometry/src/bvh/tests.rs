@@ -1,7 +1,7 @@
 //! Every tree, on every vector unit, alone or in packets, gives the same answers to the last bit.
 
 use crate::planes::Planes;
-use crate::testing::{Uniform, cube, grid, room, surfaces};
+use crate::testing::{self, Uniform, cube, grid, room, surfaces};
 use crate::{Hit, Layout, Mesh, Preset, Surfaces, Targets, shape};
 use glam::DVec3;
 use proptest::prelude::*;
@@ -165,13 +165,7 @@ fn from_an_empty_scene_all_is_seen_that_lies_in_front() {
 
 /// Triangles anywhere in a closed room.
 fn soup(seed: u64, count: u32, size: f64) -> Surfaces {
-    let mut uniform = Uniform(seed);
-    let mut mesh = Mesh::default();
-    for index in 0..count {
-        let place = uniform.point();
-        let positions = [(); 3].map(|()| place + size * uniform.point());
-        mesh.append(&positions, &[[0, 1, 2]], index, 0);
-    }
+    let mut mesh = testing::soup(seed, count, size);
     // So that something is hit and something seen.
     let (positions, triangles) = shape::cuboid(DVec3::splat(-1.0), DVec3::splat(1.0), true);
     mesh.append(&positions, &triangles, count, 1);

@@ -1,6 +1,6 @@
 //! Rays in closed rooms: nothing leaks, nothing hits itself, distances are right.
 
-use crate::testing::{Uniform, cube, grid, room, surfaces};
+use crate::testing::{self, Uniform, cube, grid, room, surfaces};
 use crate::{Error, Mesh, Surfaces, shape};
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
@@ -269,23 +269,12 @@ fn crossed(vertices: [DVec3; 3], origin: DVec3, direction: DVec3) -> Option<(f64
     (distance > 0.0).then_some((distance, u.min(v).min(1.0 - u - v)))
 }
 
-fn soup(seed: u64, count: u32, size: f64) -> Surfaces {
-    let mut uniform = Uniform(seed);
-    let mut mesh = Mesh::default();
-    for index in 0..count {
-        let place = uniform.point();
-        let positions = [(); 3].map(|()| place + size * uniform.point());
-        mesh.append(&positions, &[[0, 1, 2]], index, 0);
-    }
-    Surfaces::new(mesh).unwrap()
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
     fn the_tree_finds_what_trying_every_triangle_finds(seed: u64, count in 1_u32..300, size in 0.01..1.0) {
-        let soup = soup(seed, count, size);
+        let soup = Surfaces::new(testing::soup(seed, count, size)).unwrap();
         let mut uniform = Uniform(!seed);
         for _ in 0..50 {
             let (from, direction) = (2.0 * uniform.point(), uniform.direction());
@@ -317,7 +306,7 @@ proptest! {
 
     #[test]
     fn visibility_is_symmetric(seed: u64, size in 0.05..1.0) {
-        let soup = soup(seed, 40, size);
+        let soup = Surfaces::new(testing::soup(seed, 40, size)).unwrap();
         let mut uniform = Uniform(!seed);
         for index in 0..200 {
             // Every other end lies on an edge, where rounding decides.
