@@ -177,7 +177,9 @@ mod tests {
         let (positions, triangles) = shape::cuboid(DVec3::ZERO, DVec3::ONE, true);
         mesh.append(&positions, &triangles, 0, 0);
         let surfaces = Surfaces::new(mesh).unwrap();
-        Facets::new(&surfaces, |_| true, 0.0, 64).list().to_vec()
+        Facets::new(&surfaces, surfaces.patches(), |_| true, 0.0, 64)
+            .list()
+            .to_vec()
     }
 
     fn wall(normal: DVec3) -> Facet {

@@ -5,7 +5,7 @@ use crate::random::{Purpose, Uniforms};
 use crate::reading::Unmet;
 use crate::variation::{Origin, Variation};
 use glam::DVec3;
-use malus_geometry::{Facet, Facets, Surfaces};
+use malus_geometry::{Facet, Facets, Patches, Surfaces};
 use malus_scene::{Distribution, Material, Scene, Source, SourceKind};
 use std::f64::consts::PI;
 
@@ -168,7 +168,8 @@ impl<'a> Emitters<'a> {
             total += source_flux(source, surfaces);
             cumulated.push(total);
         }
-        let patches = Facets::new(surfaces, |t| even[t as usize], 0.0, MOST_PATCHES);
+        let patches = Patches::new(surfaces, |t| even[t as usize]);
+        let patches = Facets::new(surfaces, &patches, |_| true, 0.0, MOST_PATCHES);
         Self {
             surfaces,
             materials: &scene.materials,

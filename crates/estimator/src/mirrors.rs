@@ -101,25 +101,29 @@ impl Mirrors {
         let wanted: Vec<bool> = covers.iter().map(Cover::is_mirrorlike).collect();
         let radius = surfaces.radius();
         let least = LEAST * 4.0 * PI * radius * radius;
-        let mirrorlike = |triangle| wanted[surfaces.surface(triangle) as usize];
-        let facets = Facets::new(surfaces, mirrorlike, least, MOST);
+        let (mut seen, mut unseen, mut area) = (0.0, 0.0, 0.0);
+        let mut facets = Facets::default();
+        // What reflects nothing like a mirror needs no patches.
+        if wanted.contains(&true) {
+            let patches = surfaces.patches();
+            let mirrorlike = |surface: u32| wanted[surface as usize];
+            facets = Facets::new(surfaces, patches, mirrorlike, least, MOST);
+            let reflectances: Vec<f64> = covers.iter().map(reflectance).collect();
+            for (own, patch) in patches.iter() {
+                area += own;
+                let mirrored = own * reflectances[surfaces.surface(patch[0]) as usize];
+                if facets.of(patch[0]).is_some() {
+                    seen += mirrored;
+                } else {
+                    unseen += mirrored;
+                }
+            }
+        }
         let of_facets: Vec<Cover> = facets
             .list()
             .iter()
             .map(|facet| covers[surfaces.surface(facet.triangle) as usize].clone())
             .collect();
-        let (mut seen, mut unseen, mut area) = (0.0, 0.0, 0.0);
-        let reflectances: Vec<f64> = covers.iter().map(reflectance).collect();
-        for triangle in 0..surfaces.len() as u32 {
-            let own = surfaces.triangle(triangle).area();
-            area += own;
-            let mirrored = own * reflectances[surfaces.surface(triangle) as usize];
-            if facets.of(triangle).is_some() {
-                seen += mirrored;
-            } else {
-                unseen += mirrored;
-            }
-        }
         let share = |part: f64| if area > 0.0 { part / area } else { 0.0 };
         Self {
             unseen: share(unseen),

@@ -2,7 +2,7 @@
 //!
 //! Vertices within the [tolerance](crate::Surfaces::tolerance) of each other count as one throughout.
 
-use crate::edges::{self, Patches, Use};
+use crate::edges::{self, Pieces, Use};
 use crate::holes;
 use crate::solid::Solids;
 use crate::surfaces::tolerance;
@@ -164,26 +164,26 @@ fn by_object(
         .collect()
 }
 
-/// In each patch of triangles joined by edges of two, those wound against the greater area.
+/// In each piece of triangles joined by edges of two, those wound against the greater area.
 fn turned(mesh: &Mesh, uses: &[Use]) -> Vec<Turned> {
-    let mut patches = Patches::new(mesh.len());
+    let mut pieces = Pieces::new(mesh.len());
     for edge in edges::by_edge(uses) {
         if let [one, other] = edge {
-            patches.join(one.triangle, other.triangle, one.forward == other.forward);
+            pieces.join(one.triangle, other.triangle, one.forward == other.forward);
         }
     }
     let area = |triangle: usize| mesh.triangle(triangle).area();
     let mut of_object: BTreeMap<u32, f64> = BTreeMap::new();
-    let mut of_patch: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
+    let mut of_piece: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
     for (triangle, index) in (0_u32..).zip(0..mesh.len()) {
-        let (root, against) = patches.find(triangle);
-        of_patch.entry(root).or_default()[usize::from(against)] += area(index);
+        let (root, against) = pieces.find(triangle);
+        of_piece.entry(root).or_default()[usize::from(against)] += area(index);
         *of_object.entry(mesh.objects[index]).or_default() += area(index);
     }
     let mut turned: BTreeMap<u32, Turned> = BTreeMap::new();
     for (triangle, index) in (0_u32..).zip(0..mesh.len()) {
-        let (root, against) = patches.find(triangle);
-        let [with, other] = of_patch[&root];
+        let (root, against) = pieces.find(triangle);
+        let [with, other] = of_piece[&root];
         if against == (other > with) {
             continue;
         }

@@ -122,13 +122,13 @@ pub(crate) fn split_at_junctions(mesh: &Mesh, mut uses: Vec<Use>, tolerance: f64
     uses
 }
 
-/// Triangles joined across edges, each with whether it is wound like the first of its patch: a union-find with parity.
-pub(crate) struct Patches {
+/// Triangles joined across edges, each with whether it is wound like the first of its piece: a union-find with parity.
+pub(crate) struct Pieces {
     parent: Vec<u32>,
     turned: Vec<bool>,
 }
 
-impl Patches {
+impl Pieces {
     pub fn new(count: usize) -> Self {
         Self {
             parent: (0..).take(count).collect(),
@@ -136,7 +136,7 @@ impl Patches {
         }
     }
 
-    /// The triangle that stands for the patch, and whether `triangle` is wound against it.
+    /// The triangle that stands for the piece, and whether `triangle` is wound against it.
     pub fn find(&mut self, triangle: u32) -> (u32, bool) {
         let mut root = triangle;
         let mut turned = false;
@@ -172,13 +172,13 @@ mod tests {
 
     #[test]
     fn turning_twice_is_no_turn() {
-        let mut patches = Patches::new(6);
-        patches.join(0, 1, true);
-        patches.join(4, 3, false);
-        patches.join(1, 3, true);
-        assert_eq!(patches.find(1), (0, true));
-        assert_eq!(patches.find(3), (0, false));
-        assert_eq!(patches.find(4), (0, false));
-        assert_eq!(patches.find(5), (5, false));
+        let mut pieces = Pieces::new(6);
+        pieces.join(0, 1, true);
+        pieces.join(4, 3, false);
+        pieces.join(1, 3, true);
+        assert_eq!(pieces.find(1), (0, true));
+        assert_eq!(pieces.find(3), (0, false));
+        assert_eq!(pieces.find(4), (0, false));
+        assert_eq!(pieces.find(5), (5, false));
     }
 }

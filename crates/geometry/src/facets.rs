@@ -1,13 +1,9 @@
-//! Flat patches: neighbouring triangles of one plane, taken as one.
+//! The largest flat patches of a mesh, as polygons in their planes.
 
 use crate::Surfaces;
+use crate::patches::Patches;
 use crate::shape::across;
-use crate::weld::weld;
 use glam::{DVec2, DVec3};
-
-/// Cosine between the normals of a patch and of a triangle below which the triangle is no part of it: what is nearly
-/// flat to within the tolerance may still be a needle that stands across.
-const PARALLEL: f64 = 0.999;
 
 /// Corners of the longest hull that is kept; a rounder one is replaced by its rectangle.
 const CORNERS: usize = 8;
@@ -85,54 +81,50 @@ impl Facet {
 }
 
 impl Facets {
-    /// The patches of the triangles that are `wanted`: the `most` largest ones, none smaller than `least` (in m²).
+    /// The `most` largest of the patches whose surface is `wanted`, none smaller than `least` (in m²).
     #[must_use]
-    pub fn new(surfaces: &Surfaces, wanted: impl Fn(u32) -> bool, least: f64, most: usize) -> Self {
-        let mut triangles: Vec<u32> = (0..surfaces.len() as u32).filter(|&t| wanted(t)).collect();
-        if triangles.is_empty() {
+    pub fn new(
+        surfaces: &Surfaces,
+        patches: &Patches,
+        wanted: impl Fn(u32) -> bool,
+        least: f64,
+        most: usize,
+    ) -> Self {
+        let mut chosen: Vec<(f64, &[u32])> = patches
+            .iter()
+            .filter(|&(area, patch)| area >= least && wanted(surfaces.surface(patch[0])))
+            .collect();
+        if chosen.is_empty() {
             return Self::default();
         }
-        let neighbours = Neighbours::new(surfaces, &triangles);
-        let area = |triangle: u32| surfaces.triangle(triangle).area();
-        triangles.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
-        let mut free = vec![false; surfaces.len()];
-        for &triangle in &triangles {
-            free[triangle as usize] = true;
-        }
-        let mut patches: Vec<(f64, Vec<u32>)> = Vec::new();
-        for &seed in &triangles {
-            if free[seed as usize] {
-                let patch = grow(surfaces, &neighbours, seed, &mut free);
-                let area: f64 = patch.iter().map(|&t| area(t)).sum();
-                if area >= least {
-                    patches.push((area, patch));
-                }
-            }
-        }
-        patches.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1[0].cmp(&b.1[0])));
-        patches.truncate(most.min(usize::from(u16::MAX) - 1));
-        let mut of = vec![
-            0;
-            if patches.is_empty() {
-                0
-            } else {
-                surfaces.len()
-            }
-        ];
-        let mut list = Vec::with_capacity(patches.len());
-        for (number, (area, patch)) in (1..).zip(&patches) {
+        chosen.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1[0].cmp(&b.1[0])));
+        chosen.truncate(most.min(usize::from(u16::MAX) - 1));
+        let mut of = vec![0; surfaces.len()];
+        // The last patch that has used each vertex.
+        let mut used = vec![0; surfaces.mesh().positions.len()];
+        let mut list = Vec::with_capacity(chosen.len());
+        for (number, (area, patch)) in (1..).zip(chosen) {
             for &triangle in patch {
                 of[triangle as usize] = number;
             }
             let normal = surfaces.normal(patch[0]);
-            let hull = hull(surfaces, patch, normal);
+            let corners = patch
+                .iter()
+                .flat_map(|&triangle| surfaces.mesh().triangles[triangle as usize]);
+            let mut first_use =
+                |vertex: &u32| std::mem::replace(&mut used[*vertex as usize], number) != number;
+            let origin = surfaces.triangle(patch[0]).vertices[0];
+            let corners = corners
+                .filter(|vertex| first_use(vertex))
+                .map(|vertex| surfaces.mesh().positions[vertex as usize]);
+            let hull = hull(corners, origin, normal);
             list.push(Facet {
                 normal,
-                height: surfaces.triangle(patch[0]).vertices[0].dot(normal),
+                height: origin.dot(normal),
                 centre: ball(&hull),
                 edges: edges(&hull, normal),
                 hull,
-                area: *area,
+                area,
                 triangle: patch[0],
             });
         }
@@ -154,88 +146,11 @@ impl Facets {
     }
 }
 
-/// Which triangles share an edge.
-struct Neighbours {
-    /// Ends of an edge, the lesser first, and a triangle that has it; sorted.
-    edges: Vec<(u32, u32, u32)>,
-    welded: Vec<u32>,
-}
-
-impl Neighbours {
-    fn new(surfaces: &Surfaces, triangles: &[u32]) -> Self {
-        let mesh = surfaces.mesh();
-        let used: Vec<[u32; 3]> = triangles
-            .iter()
-            .map(|&triangle| mesh.triangles[triangle as usize])
-            .collect();
-        let welded = weld(mesh, &used, surfaces.tolerance());
-        let mut found = Self {
-            edges: Vec::with_capacity(3 * triangles.len()),
-            welded,
-        };
-        for &triangle in triangles {
-            for (one, other) in found.edges_of(surfaces, triangle) {
-                found.edges.push((one, other, triangle));
-            }
-        }
-        found.edges.sort_unstable();
-        found
-    }
-
-    fn edges_of(&self, surfaces: &Surfaces, triangle: u32) -> [(u32, u32); 3] {
-        let corners = surfaces.mesh().triangles[triangle as usize].map(|v| self.welded[v as usize]);
-        [(0, 1), (1, 2), (2, 0)].map(|(i, j)| {
-            let (a, b) = (corners[i], corners[j]);
-            (a.min(b), a.max(b))
-        })
-    }
-
-    fn at<'a>(&'a self, surfaces: &Surfaces, triangle: u32) -> impl Iterator<Item = u32> + 'a {
-        self.edges_of(surfaces, triangle)
-            .into_iter()
-            .flat_map(|(one, other)| {
-                let start = self.edges.partition_point(|e| (e.0, e.1) < (one, other));
-                self.edges[start..]
-                    .iter()
-                    .take_while(move |e| (e.0, e.1) == (one, other))
-                    .map(|e| e.2)
-            })
-    }
-}
-
-/// The free triangles about the `seed` that lie in its plane, itself first; they are free no longer.
-fn grow(surfaces: &Surfaces, neighbours: &Neighbours, seed: u32, free: &mut [bool]) -> Vec<u32> {
-    let normal = surfaces.normal(seed);
-    let height = surfaces.triangle(seed).vertices[0].dot(normal);
-    let tolerance = surfaces.tolerance();
-    let mut patch = vec![seed];
-    free[seed as usize] = false;
-    let mut next = 0;
-    while let Some(&triangle) = patch.get(next) {
-        next += 1;
-        for other in neighbours.at(surfaces, triangle) {
-            let vertices = surfaces.triangle(other).vertices;
-            if free[other as usize]
-                && surfaces.normal(other).dot(normal).abs() > PARALLEL
-                && vertices
-                    .iter()
-                    .all(|v| (v.dot(normal) - height).abs() <= tolerance)
-            {
-                free[other as usize] = false;
-                patch.push(other);
-            }
-        }
-    }
-    patch
-}
-
-/// A convex polygon in the plane across `normal` that holds the triangles, anticlockwise about the normal.
-fn hull(surfaces: &Surfaces, patch: &[u32], normal: DVec3) -> Vec<DVec3> {
-    let origin = surfaces.triangle(patch[0]).vertices[0];
+/// A convex polygon in the plane across `normal` through `origin` that holds the points, anticlockwise about the normal.
+fn hull(points: impl Iterator<Item = DVec3>, origin: DVec3, normal: DVec3) -> Vec<DVec3> {
     let (x, y) = across(normal);
-    let corners = patch.iter().flat_map(|&t| surfaces.triangle(t).vertices);
-    let flat = corners.map(|v| DVec2::new((v - origin).dot(x), (v - origin).dot(y)));
-    let mut corners = convex(flat.collect());
+    let flat = points.map(|v| DVec2::new((v - origin).dot(x), (v - origin).dot(y)));
+    let mut corners = convex(outermost(flat.collect()));
     if corners.len() > CORNERS {
         corners = rectangle(&corners);
     }
@@ -259,6 +174,43 @@ fn edges(hull: &[DVec3], normal: DVec3) -> Vec<(DVec3, f64)> {
         (inward, from.dot(inward))
     };
     hull.iter().zip(next).map(edge).collect()
+}
+
+/// Without the points that lie surely inside the others' convex hull: within the polygon of those that lie farthest
+/// in eight directions (Akl and Toussaint 1978).
+fn outermost(mut points: Vec<DVec2>) -> Vec<DVec2> {
+    const ROUND: [DVec2; 8] = [
+        DVec2::new(1.0, 0.0),
+        DVec2::new(1.0, 1.0),
+        DVec2::new(0.0, 1.0),
+        DVec2::new(-1.0, 1.0),
+        DVec2::new(-1.0, 0.0),
+        DVec2::new(-1.0, -1.0),
+        DVec2::new(0.0, -1.0),
+        DVec2::new(1.0, -1.0),
+    ];
+    let mut farthest = [points[0]; 8];
+    for point in &points {
+        for (far, way) in farthest.iter_mut().zip(ROUND) {
+            if point.dot(way) > far.dot(way) {
+                *far = *point;
+            }
+        }
+    }
+    let next = farthest.iter().cycle().skip(1);
+    let sides: Vec<(DVec2, DVec2)> = farthest
+        .iter()
+        .zip(next)
+        .filter(|(from, to)| from != to)
+        .map(|(from, to)| (*from, to - from))
+        .collect();
+    let inside = |point: &DVec2| {
+        sides
+            .iter()
+            .all(|(from, side)| side.perp_dot(point - from) > 0.0)
+    };
+    points.retain(|point| sides.is_empty() || !inside(point));
+    points
 }
 
 /// The convex hull of points, anticlockwise (Andrew's monotone chain).
@@ -325,7 +277,7 @@ mod tests {
     #[test]
     fn a_box_has_six_patches_of_two_triangles() {
         let room = surfaces(&[shape::cuboid(DVec3::ZERO, DVec3::new(3.0, 2.0, 1.0), true)]);
-        let facets = Facets::new(&room, |_| true, 0.0, 64);
+        let facets = Facets::new(&room, room.patches(), |_| true, 0.0, 64);
         let areas: Vec<f64> = facets.list().iter().map(|f| f.area).collect();
         assert_eq!(areas, [6.0, 6.0, 3.0, 3.0, 2.0, 2.0]);
         for facet in facets.list() {
@@ -343,18 +295,23 @@ mod tests {
     #[test]
     fn patches_stay_small_in_number_and_large_in_size() {
         let room = surfaces(&[shape::cuboid(DVec3::ZERO, DVec3::new(3.0, 2.0, 1.0), true)]);
-        assert_eq!(Facets::new(&room, |_| true, 2.5, 64).list().len(), 4);
-        let two = Facets::new(&room, |_| true, 0.0, 2);
+        assert_eq!(
+            Facets::new(&room, room.patches(), |_| true, 2.5, 64)
+                .list()
+                .len(),
+            4
+        );
+        let two = Facets::new(&room, room.patches(), |_| true, 0.0, 2);
         assert_eq!(two.list().len(), 2);
         assert_eq!((0..12).filter(|&t| two.of(t).is_some()).count(), 4);
-        let none = Facets::new(&room, |_| false, 0.0, 64);
+        let none = Facets::new(&room, room.patches(), |_| false, 0.0, 64);
         assert!(none.list().is_empty() && none.of(3).is_none());
     }
 
     #[test]
     fn a_round_patch_lies_in_the_square_about_it() {
         let disc = surfaces(&[shape::disc(DVec3::Z, DVec3::Z, 1.0, 128)]);
-        let facets = Facets::new(&disc, |_| true, 0.0, 64);
+        let facets = Facets::new(&disc, disc.patches(), |_| true, 0.0, 64);
         let [facet] = facets.list() else {
             panic!("one patch");
         };

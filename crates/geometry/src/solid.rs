@@ -1,6 +1,6 @@
 //! Closed solids, and which points lie inside them.
 
-use crate::edges::{self, Patches};
+use crate::edges::{self, Pieces};
 use crate::surfaces::tolerance;
 use crate::weld::weld;
 use crate::{Mesh, clean};
@@ -60,11 +60,11 @@ impl<'a> Solids<'a> {
             mesh.objects[triangle as usize]
         });
         let uses = edges::split_at_junctions(mesh, uses, tolerance);
-        let mut patches = Patches::new(mesh.len());
+        let mut pieces = Pieces::new(mesh.len());
         for edge in edges::by_edge(&uses) {
             for pair in edge.windows(2) {
                 // Two faces of a solid run along their edge in opposite senses.
-                patches.join(
+                pieces.join(
                     pair[0].triangle,
                     pair[1].triangle,
                     edge.len() == 2 && pair[0].forward == pair[1].forward,
@@ -74,14 +74,14 @@ impl<'a> Solids<'a> {
         let mut parts: BTreeMap<u32, Option<Vec<(u32, bool)>>> = BTreeMap::new();
         for edge in edges::by_edge(&uses) {
             if edge.len() % 2 == 1 {
-                parts.insert(patches.find(edge[0].triangle).0, None);
+                parts.insert(pieces.find(edge[0].triangle).0, None);
             }
         }
         let mut members: Vec<u32> = uses.iter().map(|entry| entry.triangle).collect();
         members.sort_unstable();
         members.dedup();
         for triangle in members {
-            let (root, turned) = patches.find(triangle);
+            let (root, turned) = pieces.find(triangle);
             if let Some(part) = parts.entry(root).or_insert_with(|| Some(Vec::new())) {
                 part.push((triangle, turned));
             }

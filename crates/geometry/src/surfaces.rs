@@ -4,10 +4,12 @@ use crate::bvh::{Layout, Preset, Question, Targets, Tree};
 use crate::clean::{self, Cleaned};
 use crate::coincidence::{self, Coincidence, Coverings};
 use crate::crossing::Line;
+use crate::patches::Patches;
 use crate::planes::Planes;
 use crate::{Error, Mesh, Triangle};
 use glam::DVec3;
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 /// All surfaces of a scene, ready to be asked what rays meet.
 ///
@@ -24,6 +26,7 @@ pub struct Surfaces {
     coverings: Coverings,
     coincidences: Vec<Coincidence>,
     cleaned: Vec<Cleaned>,
+    patches: OnceLock<Patches>,
 }
 
 /// Where a ray meets a surface.
@@ -80,7 +83,13 @@ impl Surfaces {
             coverings,
             coincidences: coincidence::list(hidden),
             cleaned,
+            patches: OnceLock::new(),
         })
+    }
+
+    /// All surfaces parted into flat patches: found when it is first asked for, and kept.
+    pub fn patches(&self) -> &Patches {
+        self.patches.get_or_init(|| Patches::new(self, |_| true))
     }
 
     /// Another tree of boxes over the same surfaces.

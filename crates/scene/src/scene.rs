@@ -117,6 +117,13 @@ impl Scene {
         let labels: Vec<String> = materials.iter().map(|it| it.name.clone()).collect();
         let coincidences = defects::coincidences(&surfaces, &assembly.objects, &labels);
         warnings.extend(odd_extent(&surfaces));
+        if materials
+            .iter()
+            .any(|it| it.optics.representation() > Representation::Intensity)
+        {
+            // Mirrors are chosen among these; like the tree, they serve every run over the scene.
+            surfaces.patches();
+        }
         let need = Need::of(file.settings.model, &materials, &sources);
         warnings.extend(too_little(&file.settings, &need));
         let scene = Self {
