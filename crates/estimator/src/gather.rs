@@ -201,12 +201,14 @@ impl<'w> Way<'w> {
             read(path, Part::Start);
             effort.rays += 1;
             path.clear();
+            let mut known = 0;
             loop {
                 let more = walk.advance(path);
                 read(path, Part::Onward);
-                // Each vertex costs the segment that led to it and one look at an emitter.
-                effort.rays += 2 * path.vertices.len() as u64;
+                // Each new vertex costs the segment that led to it and one look at an emitter.
+                effort.rays += 2 * (path.vertices.len() - known) as u64;
                 path.clear();
+                known = 0;
                 if more {
                     continue;
                 }
@@ -216,6 +218,7 @@ impl<'w> Way<'w> {
                 };
                 read(path, Part::Start);
                 path.vertices.push(vertex);
+                known = 1;
             }
         }
         effort

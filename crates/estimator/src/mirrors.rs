@@ -41,6 +41,9 @@ const ONWARD: f64 = 2.0;
 /// Least of that probability: the light may meet the mirror at a far more grazing angle than the ray.
 const LEAST_ONWARD: f64 = 0.05;
 
+/// The same behind the first mirror that a sensor looks into.
+const LEAST_ONWARD_OF_SENSOR: f64 = 0.3;
+
 /// Probability with which a vertex looks into mirrors, relative to the share of diffuse light that they reflect.
 const LOOK: f64 = 4.0;
 
@@ -208,7 +211,7 @@ impl Mirrors {
             let Some((facet, chosen)) = self.met(&ray, select) else {
                 break;
             };
-            let goes_on = self.onward(facet, ray.direction);
+            let goes_on = self.onward(viewer, order as usize, facet, ray.direction);
             if onward >= goes_on {
                 break;
             }
@@ -271,11 +274,17 @@ impl Mirrors {
         })
     }
 
-    /// Probability with which a ray, of any length, is followed behind a mirror.
-    fn onward(&self, facet: u32, ray: DVec3) -> f64 {
+    /// Probability with which a ray, of any length, is followed behind a mirror, the one of that order in its chain.
+    fn onward(&self, viewer: &Viewer, order: usize, facet: u32, ray: DVec3) -> f64 {
         let bound = self.bound(facet, ray);
+        // What polarisation changes of what a sensor sees comes by two mirrors, and sensors look seldom.
+        let least = if viewer.sensor && order == 0 {
+            LEAST_ONWARD_OF_SENSOR
+        } else {
+            LEAST_ONWARD
+        };
         // Below 1 where light is lost, so that rays between strong mirrors end as the light does.
-        (ONWARD * bound).min(bound.sqrt()).max(LEAST_ONWARD)
+        (ONWARD * bound).min(bound.sqrt()).max(least)
     }
 
     /// The same for the light itself, behind all mirrors of a chain but the last.
@@ -293,8 +302,8 @@ impl Mirrors {
             image
         };
         let mut odds = 1.0;
-        for &facet in before {
-            odds *= self.onward(facet, ray);
+        for (order, &facet) in before.iter().enumerate() {
+            odds *= self.onward(viewer, order, facet, ray);
             ray = self.facets.list()[facet as usize].mirrored(ray);
         }
         odds

@@ -51,7 +51,7 @@ impl Mirrors {
             let Some((facet, _)) = self.met(&ray, select) else {
                 return;
             };
-            let goes_on = self.onward(facet, ray.direction);
+            let goes_on = self.onward(viewer, order as usize, facet, ray.direction);
             ray.reflect(facet, self.facet(facet));
             let odds = tested(order + 1);
             if !target.beam(ray.facets.len()) && test < odds {
