@@ -4,7 +4,8 @@
 //! matrices, and each variant has a weight. Strands part where the walk passes a mirror that is of another kind in some of
 //! them, so many variants cost little more than one.
 
-use super::{Chain, emitted, passed_at};
+use super::chain::Chain;
+use super::{emitted, passed_at};
 use crate::emitters::state_of;
 use crate::gather::Part;
 use crate::path::{Connection, Event, Path, Vertex};

@@ -1,0 +1,127 @@
+//! Light along a walk from a sensor.
+
+use super::chain::Chain;
+use super::{emitted, passed_at};
+use crate::gather::Part;
+use crate::path::{Connection, Event, Path};
+use crate::receiver::Receiver;
+use crate::variation::Variation;
+use malus_optics::{Sensor, Stokes};
+
+/// What a sensor reads of a walk that was started from it.
+#[derive(Debug)]
+pub(crate) struct Gathering<'r, const N: usize> {
+    receiver: &'r Receiver,
+    /// Divided by the probability of every event on the way: apart, the two would leave the range of numbers on a long
+    /// walk, one to either side.
+    chain: Chain<N>,
+    sum: Stokes<N, Sensor>,
+    /// S0 of light seen in mirrors, and of emitters met by chance.
+    found: [f64; 2],
+}
+
+impl<'r, const N: usize> Gathering<'r, N> {
+    /// Nothing read yet.
+    #[must_use]
+    pub(crate) fn new(receiver: &'r Receiver) -> Self {
+        Self {
+            receiver,
+            chain: Chain::ToSensor(None),
+            sum: Stokes::unpolarised(0.0),
+            found: [0.0; 2],
+        }
+    }
+
+    /// The irradiance read, in the sensor's basis.
+    #[must_use]
+    pub(crate) fn sum(&self) -> [f64; N] {
+        self.sum.components()
+    }
+
+    /// Of S0, what was seen in mirrors and what was met by chance.
+    #[must_use]
+    pub(crate) fn found(&self) -> [f64; 2] {
+        self.found
+    }
+
+    /// Light met along a piece of a walk.
+    pub(crate) fn read(&mut self, path: &Path, part: Part, variation: &Variation) {
+        match part {
+            Part::Start => self.look(path, variation),
+            Part::Onward => self.follow(path, variation),
+        }
+    }
+
+    /// Light that the sensor sees before the walk has left it.
+    fn look(&mut self, path: &Path, variation: &Variation) {
+        self.chain = Chain::ToSensor(None);
+        for connection in &path.connections {
+            let chain = self.chain;
+            self.connect(path, connection, chain, 1.0, variation);
+        }
+    }
+
+    /// Light met along the next vertices of the walk.
+    fn follow(&mut self, path: &Path, variation: &Variation) {
+        for vertex in &path.vertices {
+            let material = &variation.materials[vertex.material as usize];
+            if vertex.emission > 0.0
+                && let Some(emission) = &material.emission
+            {
+                let direction = -vertex.arriving;
+                let light = emitted(direction, crate::emitters::emitted_state(material));
+                let read = self.chain.pass(self.receiver, direction, light)
+                    * (emission.exitance * vertex.emission * self.receiver.per_exitance);
+                self.found[1] += read.i();
+                self.sum += read;
+            }
+            if vertex.black {
+                return;
+            }
+            let scattering = material.optics.scattering();
+            for connection in &path.connections[vertex.connections.clone()] {
+                let chain =
+                    self.chain
+                        .behind(self.receiver, &material.optics, vertex, connection.toward);
+                let weight = scattering * self.receiver.per_exitance;
+                self.connect(path, connection, chain, weight, variation);
+            }
+            match vertex.event {
+                Event::Absorbed => return,
+                Event::Diffuse => {
+                    self.chain = self
+                        .chain
+                        .behind(self.receiver, &material.optics, vertex, vertex.onward)
+                        .scaled(scattering / vertex.probability);
+                }
+                Event::Mirror | Event::Through => {
+                    let mut step = variation.step(&passed_at(vertex));
+                    // Divided here: a product of thousands of reflectances has no number, nor has one over it.
+                    step.matrix = step.matrix * (1.0 / vertex.probability);
+                    self.chain = self.chain.extended(self.receiver, &step);
+                }
+            }
+        }
+    }
+
+    /// Adds the light of a connection, which goes on by the `chain`.
+    fn connect(
+        &mut self,
+        path: &Path,
+        connection: &Connection,
+        mut chain: Chain<N>,
+        weight: f64,
+        variation: &Variation,
+    ) {
+        for step in &path.steps[connection.steps.clone()] {
+            chain = chain.extended(self.receiver, &variation.step(step));
+        }
+        let light = emitted(connection.leaving, connection.state);
+        let strength = weight * connection.irradiance * variation.emitted(connection.origin);
+        let read = chain.pass(self.receiver, connection.leaving, light) * strength;
+        if connection.mirrored {
+            self.found[0] += read.i();
+        }
+        self.sum += read;
+    }
+}
