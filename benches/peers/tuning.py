@@ -18,6 +18,8 @@ AIM = 0.95
 PATIENCE, SHORTEST = 2.0, 1.0
 # The most that one step of the knob may change.
 LEAP = 16.0
+# An error that more work leaves above this share of what it was does not come from chance: the setting is given up.
+FLOOR = 0.9
 
 
 @dataclass(frozen=True)
@@ -40,7 +42,9 @@ def tuned(entrant, reference, target, seeds):
     with_knob = [trial for trial in trials if trial.setting.effort is not None]
     with_knob.sort(key=lambda trial: trial.outcome.cpu * _shortfall(trial, target))
     for trial in with_knob[:FINALISTS]:
-        trials += _refined(entrant, trial, reference, target, seeds)
+        met = [trial.outcome.seconds for trial in trials if trial.outcome.rms <= target]
+        limit = max(SHORTEST, PATIENCE * min(met)) if met else None
+        trials += _refined(entrant, trial, reference, target, seeds, limit)
     met = [trial for trial in trials if trial.outcome.rms <= target]
     return sorted(met, key=lambda trial: trial.outcome.cpu)
 
@@ -78,7 +82,7 @@ def _shortfall(trial, target):
     return (trial.outcome.rms / target) ** 2
 
 
-def _refined(entrant, trial, reference, target, seeds):
+def _refined(entrant, trial, reference, target, seeds, limit):
     trials = []
     for _ in range(STEPS):
         if AIM**2 * target <= trial.outcome.rms <= target:
@@ -86,8 +90,13 @@ def _refined(entrant, trial, reference, target, seeds):
         effort = _moved(entrant, trial.setting.effort, trial.outcome.rms, target)
         if math.isclose(effort, trial.setting.effort, rel_tol=0.01):
             break
-        trial = _try(entrant, trial.setting.at(effort), reference, seeds)
+        more, before = effort > trial.setting.effort, trial.outcome.rms
+        trial = _try(entrant, trial.setting.at(effort), reference, seeds, limit)
+        if trial is None:
+            break
         trials.append(trial)
+        if more and trial.outcome.rms > max(target, FLOOR * before):
+            break
     return trials
 
 

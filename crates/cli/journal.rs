@@ -184,8 +184,13 @@ impl Records {
     /// # Errors
     /// The file cannot be read, or is shorter than it was.
     pub fn open(path: &Path, extent: Extent) -> Result<Self> {
-        let file =
-            File::open(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+        let told = || {
+            format!(
+                "{}: cannot be read, and the file of that name that ends in .malus is of no use without it",
+                path.display()
+            )
+        };
+        let file = File::open(path).with_context(told)?;
         let length = file.metadata()?.len();
         if length < extent.bytes {
             return Err(damaged(path));

@@ -71,7 +71,7 @@ impl Keeper {
     pub fn check(&mut self) -> Result<()> {
         match self.failure.take() {
             Some(failure) => Err(failure.context(
-                "a checkpoint failed, so the run was ended; what was set aside before is still there, and --resume goes on with it",
+                "a checkpoint failed, so the run was ended; what was set aside before, if anything, is still there, and --resume goes on with it",
             )),
             None => Ok(()),
         }

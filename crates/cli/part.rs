@@ -298,25 +298,25 @@ impl<W: Write> Summed<'_, W> {
             Err(error) => Err(self.failure.take().map_or(error.into(), Error::from)),
         }
     }
+
+    /// Keeps why the file could not be written.
+    fn failed(&mut self, error: std::io::Error) -> std::io::Error {
+        let kind = error.kind();
+        self.failure = Some(error);
+        kind.into()
+    }
 }
 
 impl<W: Write> Write for Summed<'_, W> {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        match self.file.write(bytes) {
-            Ok(written) => {
-                self.sum.write(&bytes[..written]);
-                Ok(written)
-            }
-            Err(error) => {
-                let kind = error.kind();
-                self.failure = Some(error);
-                Err(kind.into())
-            }
-        }
+        let written = self.file.write(bytes);
+        let written = written.map_err(|error| self.failed(error))?;
+        self.sum.write(&bytes[..written]);
+        Ok(written)
     }
 
     fn flush(&mut self) -> std::io::Result<()> {
-        self.file.flush()
+        self.file.flush().map_err(|error| self.failed(error))
     }
 }
 
@@ -359,6 +359,7 @@ fn parsed(bytes: &[u8]) -> Result<Part> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::BufWriter;
 
     /// A disk with so many bytes left.
     struct Disk(usize);
@@ -380,17 +381,21 @@ mod tests {
 
     #[test]
     fn a_full_disk_is_told_as_such() {
-        let mut summed = Summed {
-            file: &mut Disk(100),
-            sum: SipHasher13::new(),
-            failure: None,
-        };
-        let state = State::new(Shard::WHOLE);
-        let error = summed.put(&state).expect_err("no room for 64 replicas");
-        let error = error
-            .downcast_ref::<std::io::Error>()
-            .map(std::io::Error::kind);
-        assert_eq!(error, Some(std::io::ErrorKind::StorageFull));
+        // With the smaller buffer it is found as the state is written, with the larger one as the buffer is emptied after it.
+        for buffer in [0, 1 << 20] {
+            let mut disk = BufWriter::with_capacity(buffer, Disk(100));
+            let mut summed = Summed {
+                file: &mut disk,
+                sum: SipHasher13::new(),
+                failure: None,
+            };
+            let state = State::new(Shard::WHOLE);
+            let error = summed.put(&state).expect_err("no room for 64 replicas");
+            let error = error
+                .downcast_ref::<std::io::Error>()
+                .map(std::io::Error::kind);
+            assert_eq!(error, Some(std::io::ErrorKind::StorageFull));
+        }
     }
 
     #[test]

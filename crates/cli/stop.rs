@@ -1,5 +1,6 @@
 //! When a run ends: which rules hold, and how long it will take.
 
+use crate::portion::rounded_up;
 use malus_estimator::{Answer, Progress};
 use malus_scene::{Override, Settings};
 
@@ -15,10 +16,11 @@ pub fn narrow(settings: &mut Settings, given: &[Override]) {
     }
 }
 
-/// The rules in words.
+/// The rules in words; samples in whole rounds, as they are taken, so that numbers which ask for the same read the same.
 pub fn words(settings: &Settings) -> String {
+    let samples = settings.samples.map(rounded_up);
     let rules = [
-        settings.samples.map(|it| format!("samples = {it}")),
+        samples.map(|it| format!("samples = {it}")),
         settings
             .relative_error
             .map(|it| format!("relative_error = {it}")),

@@ -116,6 +116,17 @@ fn a_finished_shard_of_a_study_is_not_computed_again() {
     assert_eq!(written().unwrap(), before);
 }
 
+#[test]
+fn numbers_of_samples_that_make_the_same_rounds_are_of_one_study() {
+    let folder = folder(MOVED, &[]);
+    shards(&folder, "out", &["1/2"], &["--samples", "100"]);
+    let output = sweep(&folder, &["--samples", "128", "--shard", "1/2", "--resume"]);
+    assert_done(&output);
+    assert_told(&stdout(&output), &["shard 1/2 is there already"]);
+    shards(&folder, "out", &["2/2"], &["--samples", "128"]);
+    assert_done(&folder.malus(&["merge", "out"]));
+}
+
 #[cfg(unix)]
 #[test]
 fn a_study_that_is_killed_goes_on_to_the_same_bytes() {

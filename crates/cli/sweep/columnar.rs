@@ -10,6 +10,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 use std::io::BufWriter;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Fields of one row group, at most: they wait in memory until they are written.
@@ -21,6 +22,7 @@ const NAME: &str = "variants.parquet";
 /// The file under way.
 pub struct Columnar {
     writer: SerializedFileWriter<BufWriter<Growing>>,
+    path: PathBuf,
     /// Whether the values of a key are numbers.
     numeric: Vec<bool>,
     /// Rows that wait.
@@ -65,11 +67,14 @@ impl Columnar {
         fields.push(field("status", Repetition::REQUIRED, false)?);
         let most = (FIELDS / fields.len()).max(1);
         let schema = Type::group_type_builder("variants").with_fields(fields);
-        let file = BufWriter::new(directory.begin(NAME)?);
+        let path = directory.path().join(NAME);
+        let file = directory.begin(NAME).with_context(|| unwritten(&path))?;
         let properties = Arc::new(WriterProperties::builder().build());
-        let writer = SerializedFileWriter::new(file, Arc::new(schema.build()?), properties);
+        let writer =
+            SerializedFileWriter::new(BufWriter::new(file), Arc::new(schema.build()?), properties);
         Ok(Self {
-            writer: writer.with_context(unwritten)?,
+            writer: writer.with_context(|| unwritten(&path))?,
+            path,
             numeric,
             rows: Vec::new(),
             most,
@@ -83,7 +88,7 @@ impl Columnar {
     pub fn add(&mut self, row: &Row) -> Result<()> {
         self.rows.push(row.clone());
         if self.rows.len() == self.most {
-            self.flush().with_context(unwritten)?;
+            self.flush().with_context(|| unwritten(&self.path))?;
         }
         Ok(())
     }
@@ -93,11 +98,13 @@ impl Columnar {
     /// # Errors
     /// It cannot be written.
     pub fn finish(mut self) -> Result<()> {
-        self.flush().with_context(unwritten)?;
+        let flushed = self.flush();
+        let told = || unwritten(&self.path);
+        flushed.with_context(told)?;
         // This writes what a reader begins with.
-        let file = self.writer.into_inner().with_context(unwritten)?;
+        let file = self.writer.into_inner().with_context(told)?;
         let file = file.into_inner().map_err(|error| error.into_error());
-        file.with_context(unwritten)?.finish()
+        file.with_context(told)?.finish().with_context(told)
     }
 
     /// Writes the rows that wait as a group.
@@ -188,6 +195,6 @@ fn level<T>(value: Option<T>) -> i16 {
     i16::from(value.is_some())
 }
 
-fn unwritten() -> String {
-    format!("{NAME}: cannot be written")
+fn unwritten(path: &Path) -> String {
+    format!("{}: cannot be written", path.display())
 }

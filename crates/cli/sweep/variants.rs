@@ -7,6 +7,10 @@ use crate::outcome::{Groups, Outcome, Quantity};
 use anyhow::{Context, Result};
 use malus_scene::{Base, Scene, Study};
 use std::fs::File;
+use std::path::PathBuf;
+
+/// Name of the file.
+const NAME: &str = "variants.csv";
 
 /// Columns of one sensor group, each after the group's name.
 const GROUP: [&str; 7] = [
@@ -35,6 +39,7 @@ pub struct Row {
 /// The file, open, and the same as Parquet where it is wanted.
 pub struct Variants {
     file: csv::Writer<File>,
+    path: PathBuf,
     columnar: Option<Columnar>,
 }
 
@@ -49,7 +54,8 @@ impl Variants {
             .parquet
             .then(|| Columnar::create(wanted.directory, study, base, &numbers));
         let mut variants = Self {
-            file: csv::Writer::from_writer(wanted.directory.growing("variants.csv")?),
+            file: csv::Writer::from_writer(wanted.directory.growing(NAME)?),
+            path: wanted.directory.path().join(NAME),
             columnar: columnar.transpose()?,
         };
         let columns = std::iter::once("variant".to_owned())
@@ -139,7 +145,7 @@ impl Variants {
         self.file
             .write_record(row)
             .and_then(|()| Ok(self.file.flush()?))
-            .context("variants.csv: cannot be written")
+            .with_context(|| format!("{}: cannot be written", self.path.display()))
     }
 }
 
