@@ -22,6 +22,8 @@ pub struct Finding<'a> {
     pub unit: &'static str,
     /// The base first, then the variants that have free points there.
     pub members: Vec<Member<'a>>,
+    /// Parts of the differences to the base that a model without polarisation does not have.
+    of_polarisation: Vec<Difference>,
     /// Order by the mean.
     ranks: Vec<Rank>,
     /// The keys of the study.
@@ -86,7 +88,9 @@ impl<'a> Finding<'a> {
         let of_mean: Vec<Estimate> = less(Quantity::Mean).into_iter().flatten().collect();
         let of_mean = differences(&of_mean, dof).into_iter().map(Some);
         let differences = std::iter::once(None).chain(of_mean);
-        let of_polarisation = std::iter::once(None).chain(less(Quantity::Polarisation));
+        let parts = less(Quantity::Polarisation);
+        let known: Vec<Estimate> = parts.iter().copied().flatten().collect();
+        let of_polarisation = std::iter::once(None).chain(parts);
         let members: Vec<Member> = given
             .into_iter()
             .zip(differences.zip(of_polarisation))
@@ -119,6 +123,7 @@ impl<'a> Finding<'a> {
         Some(Self {
             sensor: &sensor.name,
             unit: label::unit(sensor.quantity, scene.unit),
+            of_polarisation: self::differences(&known, dof),
             ranks,
             keys: study.keys(),
             to_mean: sensitivities(&columns, &means[1..]),
@@ -138,9 +143,17 @@ impl<'a> Finding<'a> {
         let differ = self.members.iter().filter_map(|it| it.difference);
         let differ = differ.filter(Difference::is_one).count();
         text += &format!(
-            "  {differ} of {} variants differ from the base (paired, 95 % for all together)\n",
+            "  {differ} of {} variants differ from the base, marked * (paired, 95 % for all together)\n",
             self.members.len() - 1
         );
+        let ends = self.of_polarisation.iter().flat_map(|it| it.interval);
+        if let Some(most) = ends.map(f64::abs).reduce(f64::max) {
+            let beyond = self.of_polarisation.iter().filter(|it| it.is_one()).count();
+            text += &format!(
+                "  polarisation makes at most {} of any difference, and is beyond chance in {beyond} of them\n",
+                significant(most, 2)
+            );
+        }
         if self.to_mean.iter().any(Option::is_some) {
             text.push('\n');
             text += &self.keys_table().text("  ");

@@ -17,10 +17,15 @@ use crate::reader::{Reader, STUDY};
 use crate::scene::Scene;
 use axis::Axis;
 use globset::Glob;
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// Variants of one study, at most.
 const MOST: usize = 1_000_000;
+
+/// Geometries of variants that are kept for others that have the same.
+const KEPT: usize = 4;
 
 /// Keys of `[run]` that belong to all variants together: differences between variants come from the same walks.
 const SHARED: [&str; 4] = ["samples", "relative_error", "seconds", "seed"];
@@ -28,7 +33,7 @@ const SHARED: [&str; 4] = ["samples", "relative_error", "seconds", "seed"];
 /// A study file: the scene that it starts from, and the values that keys take in its variants.
 ///
 /// Every key of `[grid]` is an axis of its own, `[list]` and `[sample]` are one each, and the variants are all
-/// combinations, the last axis turning fastest.
+/// combinations, numbered as the last axis turns fastest.
 #[derive(Debug)]
 pub struct Study {
     scene: PathBuf,
@@ -58,6 +63,16 @@ pub struct Base {
     pub doubts: Vec<String>,
     path: PathBuf,
     document: Node,
+    foundation: Foundation,
+    /// Geometries of variants before, the last one first.
+    founded: Mutex<VecDeque<Founded>>,
+}
+
+/// A geometry that is not the base's.
+struct Founded {
+    /// What it depends on: keys, by index, with their values as text.
+    values: Vec<(usize, String)>,
+    scene: Scene,
     foundation: Foundation,
 }
 
@@ -155,9 +170,26 @@ impl Study {
         digest(&(self.keys(), self.axes.iter().map(rows).collect::<Vec<_>>()))
     }
 
-    /// All variants.
+    /// All variants; those of one geometry follow each other where axes of geometry and of materials are apart.
     pub fn variants(&self) -> impl Iterator<Item = Variant<'_>> {
-        (0..self.count()).map(move |index| Variant { study: self, index })
+        let moves = |&axis: &usize| {
+            let keys = self.axes[axis].row(0).map(|(key, _)| &self.keys[key].key);
+            keys.into_iter()
+                .any(|key| !foundation::keeps_geometry(&key.segments()))
+        };
+        let (slow, fast): (Vec<usize>, Vec<usize>) = (0..self.axes.len()).partition(moves);
+        let order = [slow, fast].concat();
+        (0..self.count()).map(move |turn| {
+            let mut rows = vec![0; self.axes.len()];
+            let mut left = turn;
+            for &axis in order.iter().rev() {
+                rows[axis] = left % self.axes[axis].len();
+                left /= self.axes[axis].len();
+            }
+            let axes = self.axes.iter().zip(rows);
+            let index = axes.fold(0, |index, (axis, row)| index * axis.len() + row);
+            Variant { study: self, index }
+        })
     }
 
     /// Loads the scene that the study starts from, with `overrides` in it, and checks every key of the study against it.
@@ -202,6 +234,7 @@ impl Study {
             path,
             document,
             foundation,
+            founded: Mutex::default(),
         })
     }
 
@@ -319,21 +352,36 @@ impl Base {
     /// As [`Scene::load`]; what comes from the study names its place there.
     pub fn variant(&self, variant: &Variant) -> Result<Scene, Error> {
         let mut document = self.document.clone();
-        let mut keeps_geometry = true;
+        // What of it moves geometry.
+        let mut values: Vec<(usize, String)> = Vec::new();
         for (axis, row) in variant.rows() {
             variant.study.put(axis, row, &mut document)?;
-            let changed = axis.row(row).filter(|(_, value)| value.is_some());
-            for (key, _) in changed {
-                let key = &variant.study.keys[key].key;
-                keeps_geometry &= foundation::keeps_geometry(&key.segments());
+            for (key, value) in axis.row(row) {
+                let segments = variant.study.keys[key].key.segments();
+                if let Some(value) = value
+                    && !foundation::keeps_geometry(&segments)
+                {
+                    values.push((key, value.value.to_string()));
+                }
             }
         }
         let file = SceneFile::typed(document, &self.path)?;
-        if keeps_geometry {
-            self.foundation.scene(&self.scene, file, &self.path)
-        } else {
-            Scene::founded(file, &self.path).map(|(scene, _)| scene)
+        if values.is_empty() {
+            return self.foundation.scene(&self.scene, file, &self.path);
         }
+        let mut founded = self.founded.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(place) = founded.iter().position(|it| it.values == values) {
+            let known = &founded[place];
+            return known.foundation.scene(&known.scene, file, &self.path);
+        }
+        let (scene, foundation) = Scene::founded(file, &self.path)?;
+        founded.truncate(KEPT - 1);
+        founded.push_front(Founded {
+            values,
+            scene: scene.clone(),
+            foundation,
+        });
+        Ok(scene)
     }
 
     /// The value of each key of a study in the base, as text; `None` where the scene file does not give it.

@@ -1,5 +1,6 @@
 use super::*;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 const ROOM: &str = "[[shape]]\nkind = \"box\"\nmin = [0, 0, 0]\nmax = [4, 3, 2.5]\ninward = true\nmaterial = \"plaster\"\n\
     [material.plaster]\nrho = 0.5\na = 0.1\n[[source]]\nkind = \"point\"\nposition = [2, 1.5, 2]\nintensity = 10\n\
@@ -255,4 +256,42 @@ fn a_bad_value_is_a_doubt_and_fails_its_variant_alone() {
     assert!(good.surfaces.radius() > base.scene.surfaces.radius());
     let error = base.variant(&variants[1]).err().unwrap().to_string();
     assert!(error.ends_with(wrong), "{error}");
+}
+
+#[test]
+fn variants_of_one_geometry_follow_each_other_and_share_it() {
+    let folder = folder(
+        "[grid]\n\"material.plaster.a\" = [0.1, 0.3]\n\"shape.0.max\" = [[4, 3, 3], [4, 3, 2.8]]",
+        &[],
+    );
+    let study = Study::load(&folder.path().join("study.toml")).unwrap();
+    let base = study.base(&[]).unwrap();
+    let names: Vec<String> = study.variants().map(|it| it.name()).collect();
+    assert_eq!(names, ["001", "003", "002", "004"]);
+    let scenes: Vec<Scene> = study
+        .variants()
+        .map(|it| base.variant(&it).unwrap())
+        .collect();
+    for pair in scenes.chunks(2) {
+        assert!(Arc::ptr_eq(&pair[0].surfaces, &pair[1].surfaces));
+        assert_ne!(pair[0].materials[0].optics, pair[1].materials[0].optics);
+    }
+    assert!(!Arc::ptr_eq(&scenes[0].surfaces, &scenes[2].surfaces));
+    // As if it were loaded by itself.
+    let path = folder.path().join("room.toml");
+    let overrides = ["material.plaster.a=0.3", "shape.0.max=[4,3,3]"].map(|it| {
+        let (key, value) = it.split_once('=').unwrap();
+        Override {
+            key: key.into(),
+            value: value.into(),
+        }
+    });
+    let alone = Scene::load(&path, &overrides).unwrap();
+    assert_eq!(scenes[1].materials[0].optics, alone.materials[0].optics);
+    let fingerprint = |scene: &Scene| scene.fingerprint(&scene.settings);
+    assert!(
+        fingerprint(&alone)
+            .differences(&fingerprint(&scenes[1]))
+            .is_empty()
+    );
 }
