@@ -56,7 +56,9 @@ def lineup():
 
 def parse(races):
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("races", nargs="*", metavar="RACE", help=f"one of {', '.join(races)} (default: all)")
+    # A percent sign means something else to argparse.
+    names = ", ".join(races).replace("%", "%%")
+    parser.add_argument("races", nargs="*", metavar="RACE", help=f"one of {names} (default: all)")
     parser.add_argument("--quick", action="store_true", help=f"{QUICK_SEEDS} seeds instead of {SEEDS}")
     parser.add_argument("--seeds", type=int, help="seeds raced with")
     parser.add_argument("--output", type=Path, default=environment.WORK / "results", help="folder of the tables")
