@@ -29,8 +29,9 @@ const TESTED: f64 = 6.0;
 /// Longest chain that is drawn by its beam.
 const LONGEST_BEAM: usize = 3;
 
-/// Mirrors after which a ray is not followed any further.
-const LONGEST_CHAIN: u32 = 10_000;
+/// Mirrors after which a ray is not followed any further: between facing walls they lie so far away that what is left out is
+/// below 1e-4 of the light.
+const LONGEST_CHAIN: u32 = 1_000_000;
 
 /// Distance within which two images are one, as a share of the scene's radius.
 const APART: f64 = 1e-6;
