@@ -64,7 +64,7 @@ pub struct Base {
     path: PathBuf,
     document: Node,
     foundation: Foundation,
-    /// Geometries of variants before, the last one first.
+    /// Geometries of variants before, the last that was founded first.
     founded: Mutex<VecDeque<Founded>>,
 }
 
@@ -173,23 +173,27 @@ impl Study {
     /// All variants; those of one geometry follow each other where axes of geometry and of materials are apart.
     pub fn variants(&self) -> impl Iterator<Item = Variant<'_>> {
         let moves = |&axis: &usize| {
-            let keys = self.axes[axis].row(0).map(|(key, _)| &self.keys[key].key);
-            keys.into_iter()
-                .any(|key| !foundation::keeps_geometry(&key.segments()))
+            let mut keys = self.axes[axis].row(0).map(|(key, _)| &self.keys[key].key);
+            keys.any(|key| !foundation::keeps_geometry(&key.segments()))
         };
         let (slow, fast): (Vec<usize>, Vec<usize>) = (0..self.axes.len()).partition(moves);
         let order = [slow, fast].concat();
         (0..self.count()).map(move |turn| {
-            let mut rows = vec![0; self.axes.len()];
-            let mut left = turn;
-            for &axis in order.iter().rev() {
-                rows[axis] = left % self.axes[axis].len();
-                left /= self.axes[axis].len();
-            }
-            let axes = self.axes.iter().zip(rows);
+            let axes = self.axes.iter().zip(self.rows(&order, turn));
             let index = axes.fold(0, |index, (axis, row)| index * axis.len() + row);
             Variant { study: self, index }
         })
+    }
+
+    /// The row of each axis after so many turns, where the axes turn in this order, the last one fastest.
+    fn rows(&self, order: &[usize], mut turn: usize) -> Vec<usize> {
+        let mut rows = vec![0; self.axes.len()];
+        for &axis in order.iter().rev() {
+            let count = self.axes[axis].len();
+            rows[axis] = turn % count;
+            turn /= count;
+        }
+        rows
     }
 
     /// Loads the scene that the study starts from, with `overrides` in it, and checks every key of the study against it.
@@ -328,20 +332,11 @@ impl Variant<'_> {
 
     /// Each axis with the row of it that this variant has.
     fn rows(&self) -> Vec<(&Axis, usize)> {
-        let mut left = self.index;
-        let mut rows: Vec<_> = self
-            .study
-            .axes
-            .iter()
-            .rev()
-            .map(|axis| {
-                let row = left % axis.len();
-                left /= axis.len();
-                (axis, row)
-            })
-            .collect();
-        rows.reverse();
-        rows
+        let axes = &self.study.axes;
+        let order: Vec<usize> = (0..axes.len()).collect();
+        axes.iter()
+            .zip(self.study.rows(&order, self.index))
+            .collect()
     }
 }
 
