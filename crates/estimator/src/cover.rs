@@ -138,6 +138,16 @@ impl Cover {
         }
     }
 
+    /// What is expected of an image: the mirror-like reflectance at an angle for unpolarised light; in several variants, the
+    /// greatest for any.
+    #[inline]
+    pub(crate) fn mirror_mean(&self, cos: f64, sin2: f64) -> f64 {
+        match &self.optics[..] {
+            [alone] => alone.mirror(cos, sin2).mean(),
+            _ => self.mirrored(cos),
+        }
+    }
+
     #[inline]
     fn mirrored(&self, cos: f64) -> f64 {
         let at = cos.clamp(0.0, 1.0) * STEPS as f64;

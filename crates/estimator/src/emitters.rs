@@ -239,15 +239,23 @@ impl<'a> Emitters<'a> {
         1.0 - self.flux(Choice::Areas) / self.flux(Choice::All)
     }
 
-    fn entry(&self, choice: Choice, u: f64) -> usize {
+    /// The entry of the table that a uniform number chooses by flux, and where within that entry it lies: again a uniform
+    /// number, so that points next to each other choose places next to each other.
+    fn entry(&self, choice: Choice, u: f64) -> (usize, f64) {
         let count = match choice {
             Choice::Areas => self.triangles.len(),
             Choice::All => self.cumulated.len(),
         };
         let target = u * self.flux(choice);
-        self.cumulated[..count]
+        let entry = self.cumulated[..count]
             .partition_point(|&c| c <= target)
-            .min(count - 1)
+            .min(count - 1);
+        let below = match entry {
+            0 => 0.0,
+            _ => self.cumulated[entry - 1],
+        };
+        let within = (target - below) / (self.cumulated[entry] - below);
+        (entry, within.clamp(0.0, 1.0 - f64::EPSILON))
     }
 
     fn emission(&self, triangle: u32) -> (f64, &'a Material) {
@@ -265,12 +273,12 @@ impl<'a> Emitters<'a> {
     }
 
     /// One place of emission, chosen by flux; `None` where that is a hidden part of a surface.
-    pub(crate) fn look(&self, choice: Choice, [which, u, v, _]: [f64; 4]) -> Option<Site<'a>> {
+    pub(crate) fn look(&self, choice: Choice, [which, v, ..]: [f64; 4]) -> Option<Site<'a>> {
         let total = self.flux(choice);
         if total <= 0.0 {
             return None;
         }
-        let entry = self.entry(choice, which);
+        let (entry, u) = self.entry(choice, which);
         let Some(&triangle) = self.triangles.get(entry) else {
             let index = entry - self.triangles.len();
             let flux = source_flux(&self.sources[index], self.surfaces);
@@ -354,10 +362,9 @@ impl<'a> Emitters<'a> {
     ///
     /// `None` where it would start on a hidden part of a surface.
     pub(crate) fn start(&self, uniforms: Uniforms) -> Option<Start<'a>> {
-        let [which, u, v, _] = uniforms.at(0, Purpose::Emit);
-        let [s, t, ..] = uniforms.at(0, Purpose::Launch);
+        let [s, t, which, v] = uniforms.at(0, Purpose::Launch);
         let flux = self.flux(Choice::All);
-        let entry = self.entry(Choice::All, which);
+        let (entry, u) = self.entry(Choice::All, which);
         let Some(&triangle) = self.triangles.get(entry) else {
             let source = &self.sources[entry - self.triangles.len()];
             let (origin, direction, share) = self.launch(&source.kind, [u, v], [s, t]);

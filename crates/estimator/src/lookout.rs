@@ -61,6 +61,20 @@ impl Passed {
     }
 }
 
+/// Weight of one way in which a walk from a sensor finds light, with the density `own`, beside its `other` way and beside
+/// walks from emitters.
+///
+/// Sensors and emitters share the light by their densities (balance heuristic; Veach & Guibas 1995), looking and meeting
+/// by the squares of theirs (power heuristic, ibid.): of a lamp that is looked at, what is met by rare chance is noise.
+pub(crate) fn share_of(own: f64, other: f64, launched: f64) -> f64 {
+    let both = own + other;
+    // Behind thousands of mirrors densities leave the range of numbers: what is never drawn answers for nothing.
+    if !both.is_finite() {
+        return 0.0;
+    }
+    both / (both + launched) * (own * own / (own * own + other * other))
+}
+
 /// The last point of a walk that could have looked for light, and the way since.
 #[derive(Debug, Clone)]
 pub(crate) struct Lookout {
@@ -202,6 +216,33 @@ impl Lookout {
         }
         let met = by_chance * self.chain.odds;
         let looked = probability * density * distance * distance / cos;
-        met / (met * (1.0 + local) + looked)
+        share_of(1.0, looked / met, local)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ways_of_finding_light_share_it_without_rest() {
+        // Densities of looking, of meeting by chance, and of walks from emitters.
+        for [looked, met, launched] in [
+            [1.0, 1.0, 1.0],
+            [1e3, 1e-2, 5.0],
+            [1e-9, 4.0, 0.0],
+            [2.0, 7.0, 1e6],
+        ] {
+            let by_looking = share_of(1.0, met / looked, launched / looked);
+            let by_chance = share_of(1.0, looked / met, launched / met);
+            let from_emitters = launched / (looked + met + launched);
+            assert!((by_looking + by_chance + from_emitters - 1.0).abs() < 1e-14);
+            assert!(by_looking >= 0.0 && by_chance >= 0.0);
+        }
+        // What walks were never drawn for, or not to be told from that, answers for nothing.
+        assert_eq!(share_of(1.0, f64::INFINITY, f64::INFINITY), 0.0);
+        assert_eq!(share_of(1.0, f64::NAN, 0.0), 0.0);
+        assert_eq!(share_of(1.0, 0.0, f64::INFINITY), 0.0);
+        assert_eq!(share_of(1.0, 0.0, 0.0), 1.0);
     }
 }

@@ -43,7 +43,7 @@ const ONWARD: f64 = 2.0;
 const LEAST_ONWARD: f64 = 0.05;
 
 /// The same behind the first mirror that a sensor looks into.
-const LEAST_ONWARD_OF_SENSOR: f64 = 0.3;
+const LEAST_ONWARD_OF_SENSOR: f64 = 0.2;
 
 /// Probability with which a vertex looks into mirrors, relative to the share of diffuse light that they reflect.
 const LOOK: f64 = 4.0;
@@ -359,7 +359,7 @@ impl Mirrors {
             let square = span.length_squared();
             let toward = span / square.sqrt();
             let cos = toward.dot(facet.normal).abs();
-            let mirror = self.covers[index as usize].mirror_bound(cos, 1.0 - cos * cos);
+            let mirror = self.covers[index as usize].mirror_mean(cos, 1.0 - cos * cos);
             let leaving = facet.mirrored(-toward);
             let light = (target.strength)(leaving, square) * toward.dot(beam.normal) * mirror;
             if light > 0.0 && light.is_finite() {

@@ -13,14 +13,14 @@ use rand_chacha::ChaCha8Rng;
 /// What a block of four uniforms is used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// Where a walk from an emitter starts: which emitter, and where on it.
-    Emit = 0,
-    /// Lobe and direction in which a walk goes on.
+    /// The direction in which a walk leaves an emitter, and the point where.
+    Launch = 0,
+    /// Lobe and direction in which a walk from an emitter goes on.
     Scatter = 1,
+    /// The same for a walk from a sensor, its first direction included.
+    Search = 2,
     /// The point of an emitter that a vertex looks at.
-    Connect = 2,
-    /// The direction in which a walk leaves an emitter.
-    Launch = 3,
+    Connect = 3,
     /// The chain of mirrors in which a vertex looks for an emitter.
     Reflect = 4,
     /// The small mirror that the companion of a walk from a sensor is aimed at.
@@ -29,16 +29,16 @@ pub(crate) enum Purpose {
 
 impl Purpose {
     /// Which four dimensions of the Sobol' points serve it at a vertex whose numbers are spread evenly: the lowest, which are
-    /// spread best, decide where walks go.
+    /// spread best, decide about the vertices next to where a walk starts.
     fn dimensions(self, depth: u32) -> u32 {
         match self {
-            // A walk is launched from an emitter or from a sensor.
             Self::Launch => 0,
             Self::Scatter => depth,
-            Self::Emit => SPREAD,
-            Self::Connect => SPREAD + 1 + depth,
-            Self::Reflect => 2 * SPREAD + 1 + depth,
-            Self::Glint => 3 * SPREAD + 1 + depth,
+            // A walk from a sensor goes on, and looks from each vertex, straight and into mirrors.
+            Self::Search => 3 * depth + u32::from(depth > 0),
+            Self::Connect => 3 * depth + u32::from(depth == 0),
+            Self::Reflect => 3 * depth + 2,
+            Self::Glint => 3 * SPREAD + depth,
         }
     }
 }
@@ -301,7 +301,7 @@ mod tests {
     fn the_same_arguments_give_the_same_number() {
         let bits = || {
             let uniforms = Stream::new(1, 2).branch(3).walk(4);
-            uniforms.at(5, Purpose::Emit).map(f64::to_bits)
+            uniforms.at(5, Purpose::Connect).map(f64::to_bits)
         };
         assert_eq!(bits(), bits());
     }

@@ -92,6 +92,16 @@ enum Role<'a> {
     Looking(Lookout),
 }
 
+impl Role<'_> {
+    /// Which numbers decide how the walk goes on.
+    fn scattering(&self) -> Purpose {
+        match self {
+            Self::Launched(_) => Purpose::Scatter,
+            Self::Aimed(_) | Self::Looking(_) => Purpose::Search,
+        }
+    }
+}
+
 impl<'a> Walk<'a> {
     /// A walk that carries light away from an emitter.
     pub(crate) fn from_emitter(
@@ -124,7 +134,7 @@ impl<'a> Walk<'a> {
     ) -> Self {
         let Receiver { origin, normal, .. } = *receiver;
         let (direction, lookout) = if receiver.is_irradiance() {
-            let [_, u, v, _] = uniforms.at(0, Purpose::Scatter);
+            let [_, u, v, _] = uniforms.at(0, Purpose::Search);
             let direction = cosine_weighted(normal, [u, v]);
             // Light straight from sources without geometry is summed exactly, but in mirrors it is looked for.
             let choice = if techniques.mirrored && !medium.mirrors.is_empty() {
@@ -275,7 +285,7 @@ impl<'a> Walk<'a> {
         if odds.diffuse > 0.0 && meeting.cover.scatters() {
             self.join(path, &mut vertex, &meeting, odds.diffuse);
         }
-        let [lobe, u, v, split] = self.uniforms.at(self.depth, Purpose::Scatter);
+        let [lobe, u, v, split] = self.uniforms.at(self.depth, self.role.scattering());
         self.origin = vertex.position;
         let arriving = self.direction;
         let mirrored = || (arriving + normal * (2.0 * meeting.angle.0)).normalize();

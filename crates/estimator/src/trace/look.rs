@@ -2,6 +2,7 @@
 
 use super::Walk;
 use crate::emitters::Choice;
+use crate::lookout::share_of;
 use crate::medium::{Medium, target};
 use crate::mirrors::Viewer;
 use crate::path::{Connection, Path};
@@ -59,7 +60,8 @@ impl<'a> Walk<'a> {
                     0.0
                 };
                 let local = coupling(toward) * by_chance * density;
-                site.irradiance(leaving, square) * cos * inverse * looked / (looked + met + local)
+                let weight = share_of(1.0, met / looked, local / looked);
+                site.irradiance(leaving, square) * cos * inverse * weight
             };
         let first = path.steps.len();
         let span = site
