@@ -1,7 +1,7 @@
 //! Where a run stands, on stderr: a bar on a terminal, plain lines elsewhere.
 
 use crate::number::{duration, significant};
-use crate::stop::Forecast;
+use crate::stop::{Forecast, share_done};
 use indicatif::{ProgressBar, ProgressStyle};
 use malus_estimator::Progress;
 use std::io::IsTerminal;
@@ -53,8 +53,7 @@ impl Reporter {
     /// narrow terminal cuts off the end.
     pub fn show_stage(&mut self, stage: &str, elapsed: f64) {
         let left = self.limit.map_or(0.0, |limit| (limit - elapsed).max(0.0));
-        let share = elapsed / (elapsed + left).max(1e-9);
-        self.tell(share, elapsed, || {
+        self.tell(share_done(elapsed, Some(left)), elapsed, || {
             format!("at most {} left, {stage}", duration(left))
         });
     }
@@ -62,7 +61,7 @@ impl Reporter {
     /// Shows where the run stands after `elapsed` seconds.
     pub fn show(&mut self, progress: &Progress, elapsed: f64) {
         let left = self.forecast.seconds_left(progress, elapsed, self.limit);
-        let share = left.map_or(0.0, |left| elapsed / (elapsed + left).max(1e-9));
+        let share = share_done(elapsed, left);
         self.tell(share, elapsed, || state(progress, left));
     }
 

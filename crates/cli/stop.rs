@@ -86,6 +86,11 @@ impl Forecast {
     }
 }
 
+/// Share of a job that is done after `elapsed` seconds, when so many are left; nothing while nobody knows.
+pub fn share_done(elapsed: f64, left: Option<f64>) -> f64 {
+    left.map_or(0.0, |left| elapsed / (elapsed + left).max(1e-9))
+}
+
 #[cfg(test)]
 pub mod tests {
     use super::*;

@@ -246,7 +246,7 @@ fn a_study_goes_on_with_its_own_state_only() {
         assert_told(&stderr(&output), expected);
     };
     let state = "error: out/checkpoint.malus: ";
-    refused(&["--seed", "2"], &[state, "differ in [run]"], 2);
+    refused(&["--seed", "2"], &[state, "differ in run.seed"], 2);
     refused(
         &["--set", "material.plaster.rho=0.4"],
         &[state, "differ in materials"],
@@ -322,7 +322,7 @@ fn shards_that_do_not_belong_together_are_refused_by_name() {
         ],
     );
     for (name, words, differs) in [
-        ("seed", &["--seed", "2"][..], "differ in [run]"),
+        ("seed", &["--seed", "2"][..], "differ in run.seed"),
         ("samples", &["--samples", "128"], "samples = 128"),
         ("sensors", &["--sensors"], "--sensors"),
         ("pictures", &["--no-pictures"], "--no-pictures"),

@@ -8,7 +8,7 @@ use crate::output::Directory;
 use crate::part::{self, Part};
 use crate::progress::Reporter;
 use crate::report::warn;
-use crate::stop;
+use crate::stop::{self, Forecast};
 use anyhow::{Context, Result};
 use malus_estimator::{Answer, Progress, State, Together, resume_together};
 use malus_scene::{Scene, Settings};
@@ -67,10 +67,11 @@ impl Job<'_> {
         };
         let settings = batch.settings(self.base, stops);
         let (done, count) = (self.done as f64, batch.variants.len() as f64);
+        let (begun, mut forecast) = (Instant::now(), Forecast::default());
         let mut watch = |progress: &Progress, state: &State| {
-            let within = progress
-                .samples_limit
-                .map_or(0.0, |limit| progress.samples as f64 / limit as f64);
+            let elapsed = begun.elapsed().as_secs_f64();
+            let left = forecast.seconds_left(progress, elapsed, settings.seconds);
+            let within = stop::share_done(elapsed, left);
             let share = (done + within * count) / self.variants as f64;
             head.samples = progress.samples;
             head.seconds = self.before + self.started.elapsed().as_secs_f64();

@@ -305,7 +305,10 @@ impl<'a> Medium<'a> {
                 toward = (toward + meeting.normal * (2.0 * meeting.angle.0)).normalize();
             }
         }
-        if !self.mirrors.same(self.mirrors.image(&chain, target), image) {
+        if !self
+            .mirrors
+            .same(self.mirrors.image(&chain, target), image, chain.len())
+        {
             return None;
         }
         // Rays leave mirrors by an offset, so after many of them `left` no longer tells the target from the surface that

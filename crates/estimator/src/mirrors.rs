@@ -26,6 +26,9 @@ const LEAST: f64 = 1e-4;
 /// Chains of so many mirrors are all tested by rays, of longer ones as many as keeps the rays for one drawn constant.
 const TESTED: f64 = 6.0;
 
+/// Mirrors beyond which even less is spent on a chain: every doubling of the length has half of the light.
+const FAR: f64 = 16.0;
+
 /// Longest chain that is drawn by its beam.
 const LONGEST_BEAM: usize = 3;
 
@@ -228,9 +231,10 @@ impl Mirrors {
         }
     }
 
-    /// Whether two places are one.
-    pub(crate) fn same(&self, one: DVec3, other: DVec3) -> bool {
-        one.distance(other) <= self.apart
+    /// Whether two images behind so many mirrors are one, but for rounding.
+    pub(crate) fn same(&self, one: DVec3, other: DVec3, mirrors: usize) -> bool {
+        let rounding = f64::EPSILON * mirrors as f64 * other.length();
+        one.distance(other) <= self.apart + rounding
     }
 
     /// Probability with which the viewer draws this chain for the target, were the ray that draws it to meet all mirrors
@@ -384,7 +388,8 @@ impl Target<'_> {
 
 /// Probability with which a chain of so many mirrors is tested by rays.
 fn tested(mirrors: u32) -> f64 {
-    (TESTED / f64::from(mirrors)).min(1.0)
+    let mirrors = f64::from(mirrors);
+    (TESTED / mirrors).min(1.0) * (FAR / mirrors).sqrt().min(1.0)
 }
 
 /// Share of diffuse light that a reflector mirrors, for the state of light that it mirrors most of.

@@ -9,14 +9,19 @@ use std::hash::Hasher;
 use std::sync::Arc;
 
 /// What is told apart, in the words of the scene file.
-const PARTS: [&str; 7] = [
+const PARTS: [&str; 12] = [
     "[scene]",
     "geometry",
     "materials",
     "sources",
     "sensors",
     "cameras",
-    "[run]",
+    "run.model",
+    "run.compare",
+    "run.representation",
+    "run.estimator",
+    "run.cell",
+    "run.seed",
 ];
 
 /// Which of them the geometry is.
@@ -82,6 +87,19 @@ impl Scene {
             warnings: _,
         } = self;
         let materials: Vec<_> = materials.iter().map(resolved).collect();
+        let Settings {
+            model,
+            compare_scalar,
+            compare_diffuse,
+            representation,
+            estimator,
+            cell,
+            seed,
+            // The stopping rules.
+            samples: _,
+            relative_error: _,
+            seconds: _,
+        } = settings;
         Fingerprint([
             digest(&(name, unit)),
             geometry,
@@ -89,7 +107,12 @@ impl Scene {
             digest(sources),
             digest(sensors),
             digest(cameras),
-            digest(&without_stops(settings)),
+            digest(model),
+            digest(&(compare_scalar, compare_diffuse)),
+            digest(representation),
+            digest(estimator),
+            digest(cell),
+            digest(seed),
         ])
     }
 }
@@ -105,15 +128,6 @@ fn resolved(material: &Material) -> impl Debug + '_ {
         values: _,
     } = material;
     (name, object, optics, two_sided, emission)
-}
-
-fn without_stops(settings: &Settings) -> Settings {
-    Settings {
-        samples: None,
-        relative_error: None,
-        seconds: None,
-        ..settings.clone()
-    }
 }
 
 /// Digest of all that a value holds: what derives `Debug` leaves no field out, and a float is written so that it reads
@@ -225,8 +239,11 @@ mod tests {
             ("source.0.intensity", "11", "sources"),
             ("sensor.floor.normal", "[0, 0, -1]", "sensors"),
             ("camera.0.samples", "65", "cameras"),
-            ("run.seed", "2", "[run]"),
-            ("run.model", "scalar", "[run]"),
+            ("run.seed", "2", "run.seed"),
+            ("run.model", "scalar", "run.model"),
+            ("run.compare", "[\"diffuse\"]", "run.compare"),
+            ("run.representation", "full", "run.representation"),
+            ("run.estimator", "gather", "run.estimator"),
         ] {
             let other = fingerprint(ROOM, &[(key, value)]);
             assert_eq!(plain.differences(&other), [part], "{key}");

@@ -379,16 +379,26 @@ impl Base {
         Ok(scene)
     }
 
-    /// The value of each key of a study in the base, as text; `None` where the scene file does not give it.
+    /// The value of each key of a study in the base, as text: that of the scene file, or for a material the one that the
+    /// model or a default gives; `None` where there is none, or objects have different ones.
     #[must_use]
     pub fn values(&self, study: &Study) -> Vec<Option<String>> {
-        let value = |varied: &Varied| {
-            varied
-                .key
-                .find(&self.document)
-                .map(|node| node.value.to_string())
+        let value = |varied: &Varied| match varied.key.find(&self.document) {
+            Some(node) => Some(node.value.to_string()),
+            None => self.resolved(&varied.key),
         };
         study.keys.iter().map(value).collect()
+    }
+
+    /// The value that all materials of the key's name have.
+    fn resolved(&self, key: &Key) -> Option<String> {
+        let ["material", name, key] = key.segments()[..] else {
+            return None;
+        };
+        let named = self.scene.materials.iter().filter(|it| it.name == name);
+        let mut values = named.filter_map(|it| it.values.iter().find(|value| value.key == key));
+        let first = &values.next()?.value;
+        values.all(|it| it.value == *first).then(|| first.clone())
     }
 }
 

@@ -40,7 +40,7 @@ fn a_shard_that_is_there_twice_is_told_with_both_files() {
 fn a_shard_of_another_run_is_told_with_what_differs() {
     let folder = halves();
     for (name, shard, words, differs) in [
-        ("seed", "2/2", &["--seed", "2"][..], "differ in [run]"),
+        ("seed", "2/2", &["--seed", "2"][..], "differ in run.seed"),
         (
             "material",
             "2/2",
@@ -208,7 +208,7 @@ fn a_run_goes_on_with_its_own_state_only() {
     let state = folder.path("out/checkpoint.malus");
     std::fs::copy(folder.path("out/shard-01-of-02.malus"), &state).unwrap();
     for (words, part) in [
-        (&["--seed", "2"][..], "differ in [run]"),
+        (&["--seed", "2"][..], "differ in run.seed"),
         (
             &["--set", "material.plaster.rho=0.4"],
             "differ in materials",
@@ -232,10 +232,10 @@ fn a_run_goes_on_with_its_own_state_only() {
     }
     let told = folder.refused(&["run", "room.toml", "-o", "out", "--resume"]);
     assert_told(&told, &["out/checkpoint.malus: is shard 1/2"]);
-    std::fs::write(&state, b"malus state 2\nabc").unwrap();
+    std::fs::write(&state, b"malus state 3\nabc").unwrap();
     let told = folder.refused(&["run", "room.toml", "-o", "out", "--resume"]);
     assert_told(&told, &["out/checkpoint.malus: is damaged"]);
-    assert_eq!(std::fs::read(&state).unwrap(), b"malus state 2\nabc");
+    assert_eq!(std::fs::read(&state).unwrap(), b"malus state 3\nabc");
 }
 
 /// A directory stands where the file should go, as for a disk that is full or may not be written to.

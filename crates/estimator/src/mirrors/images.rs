@@ -101,7 +101,11 @@ impl Mirrors {
                 [select, ..] = tries.next();
             }
             retraced.facets.len() == ray.facets.len()
-                && self.same(self.image(&retraced.facets, target), image)
+                && self.same(
+                    self.image(&retraced.facets, target),
+                    image,
+                    ray.facets.len(),
+                )
         };
         let (mut sum, mut weight, mut count, mut octave) = (1.0, 1.0, 0, TRIES);
         loop {
