@@ -63,13 +63,13 @@ fn every_variant_is_a_row_with_its_difference_to_the_base() {
     let names: Vec<&str> = rows.keys().map(String::as_str).collect();
     assert_eq!(names, ["001", "002", "003", "004", "base"]);
     assert_eq!(rows["002"]["material.plaster.n"], "2");
-    // The scene does not say n.
+    // The scene does not say n: it is the default.
     assert_eq!(
         (
             &*rows["base"]["material.plaster.a"],
             &*rows["base"]["material.plaster.n"]
         ),
-        ("0.3", "")
+        ("0.3", "1.5")
     );
     for name in ["base", "003"] {
         // The third variant is the base.

@@ -21,7 +21,7 @@ use std::path::Path;
 const FORM: &str = "malus state 3\n";
 
 /// The number in it.
-const FORM_NUMBER: u32 = 2;
+const FORM_NUMBER: u32 = 3;
 
 /// What is said of a file that is not as it was written.
 const DAMAGED: &str =
