@@ -49,10 +49,10 @@ const LEAST_ONWARD: f64 = 0.05;
 const LEAST_ONWARD_OF_SENSOR: f64 = 0.2;
 
 /// Probability with which a vertex looks into mirrors, relative to the share of diffuse light that they reflect.
-const LOOK: f64 = 4.0;
+const LOOK: f64 = 1.0;
 
 /// Least of that probability.
-const LEAST_LOOK: f64 = 0.1;
+const LEAST_LOOK: f64 = 0.05;
 
 /// The flat mirrors of a scene, as one model has them.
 pub(crate) struct Mirrors {

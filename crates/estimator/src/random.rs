@@ -34,11 +34,11 @@ impl Purpose {
         match self {
             Self::Launch => 0,
             Self::Scatter => depth,
-            // A walk from a sensor goes on, and looks from each vertex, straight and into mirrors.
-            Self::Search => 3 * depth + u32::from(depth > 0),
-            Self::Connect => 3 * depth + u32::from(depth == 0),
-            Self::Reflect => 3 * depth + 2,
-            Self::Glint => 3 * SPREAD + depth,
+            // A walk from a sensor looks at an emitter from each of its vertices.
+            Self::Search => 2 * depth,
+            Self::Connect => 2 * depth + 1,
+            Self::Reflect => 2 * SPREAD + 1 + depth,
+            Self::Glint => 3 * SPREAD + 2 + depth,
         }
     }
 }
