@@ -46,10 +46,10 @@ const ONWARD: f64 = 2.0;
 const LEAST_ONWARD: f64 = 0.05;
 
 /// The same behind the first mirror that a sensor looks into.
-const LEAST_ONWARD_OF_SENSOR: f64 = 0.2;
+const LEAST_ONWARD_OF_SENSOR: f64 = 0.25;
 
 /// Probability with which a vertex looks into mirrors, relative to the share of diffuse light that they reflect.
-const LOOK: f64 = 1.0;
+const LOOK: f64 = 2.0;
 
 /// Least of that probability.
 const LEAST_LOOK: f64 = 0.05;

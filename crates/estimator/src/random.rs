@@ -29,16 +29,17 @@ pub(crate) enum Purpose {
 
 impl Purpose {
     /// Which four dimensions of the Sobol' points serve it at a vertex whose numbers are spread evenly: the lowest, which are
-    /// spread best, decide about the vertices next to where a walk starts.
+    /// spread best, decide where walks go.
     fn dimensions(self, depth: u32) -> u32 {
         match self {
             Self::Launch => 0,
             Self::Scatter => depth,
-            // A walk from a sensor looks at an emitter from each of its vertices.
-            Self::Search => 2 * depth,
-            Self::Connect => 2 * depth + 1,
+            Self::Search => depth,
+            Self::Connect if depth > 0 => SPREAD - 1 + depth,
+            Self::Reflect if depth == 0 => 2 * SPREAD,
+            Self::Connect => 2 * SPREAD + 1,
             Self::Reflect => 2 * SPREAD + 1 + depth,
-            Self::Glint => 3 * SPREAD + 2 + depth,
+            Self::Glint => 3 * SPREAD + 1 + depth,
         }
     }
 }
