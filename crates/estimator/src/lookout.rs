@@ -240,9 +240,17 @@ mod tests {
             assert!(by_looking >= 0.0 && by_chance >= 0.0);
         }
         // What walks were never drawn for, or not to be told from that, answers for nothing.
-        assert_eq!(share_of(1.0, f64::INFINITY, f64::INFINITY), 0.0);
-        assert_eq!(share_of(1.0, f64::NAN, 0.0), 0.0);
-        assert_eq!(share_of(1.0, 0.0, f64::INFINITY), 0.0);
-        assert_eq!(share_of(1.0, 0.0, 0.0), 1.0);
+        for (other, launched, share) in [
+            (f64::INFINITY, f64::INFINITY, 0.0),
+            (f64::NAN, 0.0, 0.0),
+            (0.0, f64::INFINITY, 0.0),
+            (0.0, 0.0, 1.0f64),
+        ] {
+            assert_eq!(
+                share_of(1.0, other, launched).to_bits(),
+                share.to_bits(),
+                "{other} {launched}"
+            );
+        }
     }
 }
