@@ -20,9 +20,6 @@ use std::path::Path;
 /// First line of a file; the number rises whenever what follows it is laid out anew.
 const FORM: &str = "malus state 3\n";
 
-/// The number in it.
-const FORM_NUMBER: u32 = 3;
-
 /// What is said of a file that is not as it was written.
 const DAMAGED: &str =
     "is damaged: its checksum is not that of its content; remove it, and compute it again";
@@ -331,9 +328,10 @@ fn parsed(bytes: &[u8]) -> Result<Part> {
         let form = str::from_utf8(form)
             .ok()
             .and_then(|form| form.parse::<u32>().ok());
+        let ours = FORM.trim_start_matches(ANY_FORM).trim_end();
         match form {
-            Some(form) if form != FORM_NUMBER => {
-                bail!("is of form {form}, this version of malus reads form {FORM_NUMBER}")
+            Some(form) if form.to_string() != ours => {
+                bail!("is of form {form}, this version of malus reads form {ours}")
             }
             _ => bail!(DAMAGED),
         }

@@ -61,18 +61,18 @@ impl Passed {
     }
 }
 
-/// Weight of one way in which a walk from a sensor finds light, with the density `own`, beside its `other` way and beside
-/// walks from emitters.
+/// Weight of one way in which a walk from a sensor finds light, beside its `other` way and beside walks from emitters, the
+/// densities of which are given in units of its own.
 ///
 /// Sensors and emitters share the light by their densities (balance heuristic; Veach & Guibas 1995), looking and meeting
 /// by the squares of theirs (power heuristic, ibid.): of a lamp that is looked at, what is met by rare chance is noise.
-pub(crate) fn share_of(own: f64, other: f64, launched: f64) -> f64 {
-    let both = own + other;
+pub(crate) fn share_of(other: f64, launched: f64) -> f64 {
+    let both = 1.0 + other;
     // Behind thousands of mirrors densities leave the range of numbers: what is never drawn answers for nothing.
     if !both.is_finite() {
         return 0.0;
     }
-    both / (both + launched) * (own * own / (own * own + other * other))
+    both / (both + launched) * (1.0 / (1.0 + other * other))
 }
 
 /// The last point of a walk that could have looked for light, and the way since.
@@ -216,7 +216,7 @@ impl Lookout {
         }
         let met = by_chance * self.chain.odds;
         let looked = probability * density * distance * distance / cos;
-        share_of(1.0, looked / met, local)
+        share_of(looked / met, local)
     }
 }
 
@@ -233,8 +233,8 @@ mod tests {
             [1e-9, 4.0, 0.0],
             [2.0, 7.0, 1e6],
         ] {
-            let by_looking = share_of(1.0, met / looked, launched / looked);
-            let by_chance = share_of(1.0, looked / met, launched / met);
+            let by_looking = share_of(met / looked, launched / looked);
+            let by_chance = share_of(looked / met, launched / met);
             let from_emitters = launched / (looked + met + launched);
             assert!((by_looking + by_chance + from_emitters - 1.0).abs() < 1e-14);
             assert!(by_looking >= 0.0 && by_chance >= 0.0);
@@ -247,7 +247,7 @@ mod tests {
             (0.0, 0.0, 1.0f64),
         ] {
             assert_eq!(
-                share_of(1.0, other, launched).to_bits(),
+                share_of(other, launched).to_bits(),
                 share.to_bits(),
                 "{other} {launched}"
             );

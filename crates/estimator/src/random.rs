@@ -33,11 +33,11 @@ impl Purpose {
     fn dimensions(self, depth: u32) -> u32 {
         match self {
             Self::Launch => 0,
-            Self::Scatter => depth,
-            Self::Search => depth,
-            Self::Connect if depth > 0 => SPREAD - 1 + depth,
+            Self::Scatter | Self::Search => depth,
+            // What a sensor itself looks at comes after that of the vertices, which most of the light comes by.
             Self::Reflect if depth == 0 => 2 * SPREAD,
-            Self::Connect => 2 * SPREAD + 1,
+            Self::Connect if depth == 0 => 2 * SPREAD + 1,
+            Self::Connect => SPREAD - 1 + depth,
             Self::Reflect => 2 * SPREAD + 1 + depth,
             Self::Glint => 3 * SPREAD + 1 + depth,
         }

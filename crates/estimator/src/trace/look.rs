@@ -60,7 +60,7 @@ impl<'a> Walk<'a> {
                     0.0
                 };
                 let local = coupling(toward) * by_chance * density;
-                let weight = share_of(1.0, met / looked, local / looked);
+                let weight = share_of(met / looked, local / looked);
                 site.irradiance(leaving, square) * cos * inverse * weight
             };
         let first = path.steps.len();
