@@ -242,6 +242,57 @@ fn each_of_two_planes_absorbs_its_share() {
     assert!(absorbed(&energy, "mirror").0.abs() < 1e-12);
 }
 
+/// A point source in a black room, and a mirroring ball of half its distance as radius: the ball meets (1 − √3/2)/2 of the flux,
+/// and sends all of it on to where no technique can find it.
+#[test]
+fn light_that_no_technique_finds_is_measured() {
+    let room = |estimator: &str| {
+        results(&format!(
+            "[[shape]]
+            kind = 'box'
+            min = [-3, -3, -3]
+            max = [3, 3, 3]
+            inward = true
+            material = 'wall'
+            [[shape]]
+            kind = 'sphere'
+            centre = [1, 0, 0]
+            radius = 0.5
+            subdivisions = 6
+            material = 'mirror'
+            [material.wall]
+            rho = 0
+            [material.mirror]
+            rho = 0
+            a = 1
+            n = inf
+            [[source]]
+            kind = 'point'
+            position = [0, 0, 0]
+            intensity = 1
+            [[sensor]]
+            name = 'floor'
+            grid = {{ origin = [-2, -2, -3], u = [4, 0, 0], v = [0, 4, 0], counts = [16, 16] }}
+            normal = [0, 0, 1]
+            [run]
+            estimator = '{estimator}'
+            samples = 65536"
+        ))
+    };
+    let met = 0.5 - 0.25 * 3.0_f64.sqrt();
+    let exact = met / (1.0 + met);
+    for estimator in ["local", "gather", "auto"] {
+        let results = room(estimator);
+        let unseen = results.unseen.unwrap();
+        // The facets lie within 10⁻⁴ of the ball; the largest 64 of 41,000 `auto` does look into.
+        let error = unseen.standard_error.hypot(2e-3 * exact);
+        assert_estimate(estimator, (unseen.share, error), exact, 0.02);
+        assert!(unseen.at_most > unseen.share);
+        assert!(results.warnings[0].contains("on average over all surfaces that is 6."));
+    }
+    assert!(room("direct").unseen.is_none());
+}
+
 /// A plate of glass in parallel light at 45° keeps 1 − Rs of s-polarised and 1 − Rp of p-polarised light, Rs = 0.09201336,
 /// Rp = Rs²; of the scalar model's walks, 1 − (Rs + Rp)/2 of either.
 #[test]

@@ -5,7 +5,7 @@ mod parts;
 
 use crate::cli::{Folder, ROOM, stderr};
 use crate::experiment::{s0, scene};
-use malus_estimator::{Answer, Cohort, Estimate, run, run_together};
+use malus_estimator::{Answer, Cohort, Estimate, Sharing, run, run_together};
 use malus_scene::{Scene, Settings};
 use std::collections::BTreeMap;
 use std::process::Output;
@@ -301,7 +301,9 @@ pub fn deviation(rooms: &[Scene], seed: u64, samples: u64) -> f64 {
         ..rooms[0].settings.clone()
     };
     let scenes: Vec<&Scene> = rooms.iter().collect();
-    let together = run_together(&scenes, &settings(seed), None, &mut |_| Answer::Continue);
+    let together = run_together(&scenes, &settings(seed), Sharing::Points, &mut |_| {
+        Answer::Continue
+    });
     let last = together.others.last().unwrap();
     let alone = run(
         scenes[scenes.len() - 1],
@@ -361,7 +363,9 @@ fn a_difference_along_the_same_walks_is_ten_times_better_known_than_one_of_indep
         ..rooms[0].settings.clone()
     };
     let scenes: Vec<&Scene> = rooms.iter().collect();
-    let together = run_together(&scenes, &settings, None, &mut |_| Answer::Continue);
+    let together = run_together(&scenes, &settings, Sharing::Points, &mut |_| {
+        Answer::Continue
+    });
     let [one, other] = [&together.first.groups[0], &together.others[0][0]];
     let pairs = one.replicates.mean.iter().zip(&other.replicates.mean);
     let differences: Vec<f64> = pairs.map(|(a, b)| a - b).collect();

@@ -43,6 +43,8 @@ struct Summary<'a> {
     relative_error_max: f64,
     techniques: Techniques,
     energy: Energy<'a>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unseen: Option<Unseen>,
     warnings: &'a [String],
 }
 
@@ -82,6 +84,14 @@ impl<'a> Energy<'a> {
             materials: materials.collect(),
         }
     }
+}
+
+/// Light that no technique of the estimator can find, as a share of all light that meets surfaces.
+#[derive(Serialize)]
+struct Unseen {
+    share: f64,
+    se: f64,
+    at_most: f64,
 }
 
 /// What each way of finding light has brought, as shares of S0 summed over the free sensor points.
@@ -136,6 +146,11 @@ pub fn json(
             local: results.shares.local,
         },
         energy: Energy::of(&results.energy),
+        unseen: results.unseen.map(|it| Unseen {
+            share: it.share,
+            se: it.standard_error,
+            at_most: it.at_most,
+        }),
         warnings: &circumstances.warnings,
     };
     let mut text = serde_json::to_vec_pretty(&summary)?;

@@ -25,7 +25,7 @@ use crate::report::warn;
 use crate::run::{End, directory, pool};
 use crate::stop;
 use job::Job;
-use malus_estimator::Shard;
+use malus_estimator::{Shard, Sharing};
 use malus_scene::{Base, Settings, Study};
 use results::Wanted;
 use std::path::PathBuf;
@@ -74,6 +74,10 @@ pub fn sweep(command: &args::Sweep) -> Result<End, Failure> {
         base: &asked.base.scene,
         settings: &asked.settings,
         variants: asked.study.count(),
+        sharing: match asked.study.moves() {
+            true => Sharing::Differences,
+            false => Sharing::Points,
+        },
         done: 0,
         directory: &directory,
         name: &name,

@@ -90,7 +90,7 @@ fn main() {
 fn planes() {
     table(
         "Two infinite planes",
-        "A box whose side walls are ideal mirrors, with a point source in its middle: mean of the floor's 8 × 8 points over 2π I₀, of runs of 8,192 samples.",
+        "A box whose side walls are ideal mirrors, with a point source in its middle: mean of the floor's 8 × 8 points over 2π I₀.",
         rooms::planes(),
     );
 }

@@ -1,6 +1,6 @@
 //! Whether a variant that shares its walks with others says what a run of it alone says.
 
-use malus_estimator::{Answer, run, run_together};
+use malus_estimator::{Answer, Sharing, run, run_together};
 use malus_scene::{Override, Scene, Settings};
 use std::path::Path;
 
@@ -40,7 +40,9 @@ fn deviation(floors: &[Scene], seed: u64) -> f64 {
         .iter()
         .position(|it| it.name == "SENSOR_Board")
         .unwrap();
-    let together = run_together(&scenes, &settings(seed), None, &mut |_| Answer::Continue);
+    let together = run_together(&scenes, &settings(seed), Sharing::Points, &mut |_| {
+        Answer::Continue
+    });
     let alone = run(last, &settings(1_000_000 + seed), &mut |_| Answer::Continue);
     let [one, other] = [&together.others[scenes.len() - 2], &alone.groups].map(|groups| {
         let reading = &groups[board].readings[0];

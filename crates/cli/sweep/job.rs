@@ -10,7 +10,7 @@ use crate::progress::Reporter;
 use crate::report::warn;
 use crate::stop::{self, Forecast};
 use anyhow::{Context, Result};
-use malus_estimator::{Answer, Progress, State, Together, resume_together};
+use malus_estimator::{Answer, Progress, Sharing, State, Together, resume_together};
 use malus_scene::{Scene, Settings};
 use std::time::Instant;
 
@@ -22,6 +22,8 @@ pub struct Job<'a> {
     pub settings: &'a Settings,
     /// Number of variants.
     pub variants: usize,
+    /// How the base's walks are shared out between emitters and sensors.
+    pub sharing: Sharing<'static>,
     /// Those that are computed, or failed.
     pub done: usize,
     /// Where it is set aside.
@@ -91,7 +93,8 @@ impl Job<'_> {
             }
         };
         let scenes = batch.scenes(self.base);
-        let together = resume_together(&scenes, &settings, allocation, state, &mut watch);
+        let sharing = allocation.map_or(self.sharing, Sharing::Like);
+        let together = resume_together(&scenes, &settings, sharing, state, &mut watch);
         self.keeper.check()?;
         let told = || format!("{}", self.directory.path().join(self.name).display());
         let together = together.with_context(told)?;

@@ -16,7 +16,7 @@ use crate::progress::Reporter;
 use crate::report::warn;
 use crate::shards::Shards;
 use anyhow::{Context, Result, anyhow, ensure};
-use malus_estimator::{Allocation, Answer, REPLICAS, State, Together, resume_together};
+use malus_estimator::{Allocation, Answer, REPLICAS, Sharing, State, Together, resume_together};
 use malus_scene::{Scene, Settings};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -185,11 +185,10 @@ impl Joint<'_> {
         let settings = batch.settings(base, &stops);
         // All samples are taken, so nothing is left to compute but what they say.
         let scenes = batch.scenes(base);
-        let like = Some(self.allocation);
         Ok(resume_together(
             &scenes,
             &settings,
-            like,
+            Sharing::Like(self.allocation),
             &mut state,
             &mut |_, _| Answer::Continue,
         )?)

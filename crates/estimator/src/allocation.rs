@@ -43,10 +43,41 @@ const RAY: f64 = 1.0;
 const JOIN: f64 = 0.2;
 const LOOK: f64 = 4.0;
 
+/// How much a walk from the emitters counts for where differences between means over many points are asked for.
+const IN_DIFFERENCES: f64 = 0.2;
+
+/// By what walks are shared out between the emitters and the sensors.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Sharing<'a> {
+    /// What brings each sensor point to its error at the least cost, as a pilot finds it.
+    #[default]
+    Points,
+    /// What serves means over many points, and their differences between scenes of which each has walks of its own.
+    ///
+    /// All points share a walk from the emitters and err together by it, and where a lamp has moved such walks fall out of
+    /// step at edges. Those from the sensors answer for more of the light here.
+    Differences,
+    /// An earlier run, with which this one is paired.
+    Like(&'a Allocation),
+}
+
+impl Sharing<'_> {
+    /// How much a walk from the emitters counts for, beside the density of its points.
+    fn trust(self) -> f64 {
+        match self {
+            Self::Points => 1.0,
+            Self::Differences => IN_DIFFERENCES,
+            Self::Like(allocation) => allocation.trust,
+        }
+    }
+}
+
 /// Walks from each sensor, relative to those from the emitters, as the pilot of a run has found them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Allocation {
     parts: Vec<u32>,
+    /// How much a walk from the emitters counts for.
+    trust: f64,
     /// Relative variance at the worst sensor that one walk from the emitters, with its share of walks from the sensors, is
     /// expected to leave; infinite where no pilot has told.
     variance: f64,
@@ -57,6 +88,7 @@ impl Allocation {
     pub(crate) fn even(sensors: usize) -> Self {
         Self {
             parts: vec![PARTS; sensors],
+            trust: 1.0,
             variance: f64::INFINITY,
         }
     }
@@ -74,9 +106,14 @@ impl Allocation {
     }
 
     /// Walks from the emitters for one walk from this sensor.
-    #[inline]
-    pub(crate) fn launched(&self, sensor: usize) -> f64 {
+    fn launched(&self, sensor: usize) -> f64 {
         f64::from(PARTS) / f64::from(self.parts[sensor])
+    }
+
+    /// Weight of walks from the emitters against those from this sensor, beside the densities of their points.
+    #[inline]
+    pub(crate) fn rivalry(&self, sensor: usize) -> f64 {
+        self.trust * self.launched(sensor)
     }
 
     /// The shares that a pilot run finds, for sensors of which the irradiance `exact` is known without walks.
@@ -87,7 +124,9 @@ impl Allocation {
         aims: &[Aims],
         exact: impl Fn(usize) -> f64,
         seed: u64,
+        sharing: Sharing,
     ) -> Self {
+        let trust = sharing.trust();
         let sensors = receivers.len();
         let free: Vec<usize> = (0..sensors)
             .filter(|&s| !receivers[s].enclosed && receivers[s].is_irradiance())
@@ -110,6 +149,7 @@ impl Allocation {
             aims,
             tried: Self {
                 parts: vec![TRIED; sensors],
+                trust,
                 variance: f64::INFINITY,
             },
         };
@@ -138,7 +178,10 @@ impl Allocation {
         let cost_launched = rounds.iter().map(|r| r.cost_launched).sum::<f64>() / launched;
         let gathered = own * free.len() as f64;
         let cost_gathered = rounds.iter().map(|r| r.cost_gathered).sum::<f64>() / gathered;
-        let mut shares = Self::even(sensors);
+        let mut shares = Self {
+            trust,
+            ..Self::even(sensors)
+        };
         if let Some(shared) = cheapest(&needs, cost_launched, cost_gathered) {
             for (&sensor, need) in free.iter().zip(&needs) {
                 let parts = f64::from(PARTS) * need.gathered / (shared - need.launched);
@@ -256,7 +299,7 @@ impl Pilot<'_> {
                     Observer {
                         receiver: &self.receivers[sensor],
                         aims: &self.aims[sensor],
-                        launched: self.tried.launched(sensor),
+                        launched: self.tried.rivalry(sensor),
                     },
                     stream.branch(sensor as u64),
                     0..self.walks,
@@ -291,6 +334,7 @@ mod tests {
     fn walks_of_a_share_are_rounded_up_so_that_every_sensor_has_one() {
         let shares = Allocation {
             parts: vec![1, 16, 64, 512],
+            trust: 1.0,
             variance: 1.0,
         };
         let walks = |launched| [0, 1, 2, 3].map(|sensor| shares.walks(sensor, launched));

@@ -19,7 +19,7 @@ pub(crate) struct Observer<'a> {
     pub receiver: &'a Receiver,
     /// How the companions of its walks are aimed.
     pub aims: &'a Aims<'a>,
-    /// Walks from the emitters for one of its own.
+    /// Weight of walks from the emitters against its own.
     pub launched: f64,
 }
 

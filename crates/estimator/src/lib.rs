@@ -23,6 +23,7 @@ mod local;
 mod lookout;
 mod medium;
 mod mirrors;
+mod missing;
 mod pass;
 mod path;
 mod picture;
@@ -38,11 +39,12 @@ mod statistics;
 mod trace;
 mod variation;
 
-pub use allocation::Allocation;
+pub use allocation::{Allocation, Sharing};
 pub use choose::unseen;
 pub use picture::{Film, Picture, expose};
 pub use results::{
     Absorbed, Answer, Energy, Group, Paired, Progress, Reading, Replicates, Results, Shares, Stop,
+    Unseen,
 };
 pub use run::{Together, resume, resume_together, run, run_together};
 pub use state::{NoShard, Shard, State, StateError};

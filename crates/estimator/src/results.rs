@@ -4,6 +4,7 @@ use crate::allocation::Allocation;
 use malus_optics::Representation;
 use malus_scene::Estimator;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// The outcome of a run.
 #[derive(Debug, Clone)]
@@ -35,6 +36,8 @@ pub struct Results {
     pub allocation: Allocation,
     /// Where the emitted flux goes, in the main model.
     pub energy: Energy,
+    /// Light of the main model that the estimator cannot see; `None` where it sees all.
+    pub unseen: Option<Unseen>,
     /// Paths that the estimator cannot see, walks that were truncated.
     pub warnings: Vec<String>,
 }
@@ -152,6 +155,29 @@ impl Energy {
     #[must_use]
     pub fn missing(&self) -> f64 {
         self.emitted - self.absorbed - self.escaped - self.truncated
+    }
+}
+
+/// Light that no technique of an estimator can find, as a share of all light that meets surfaces: the mean over all surfaces,
+/// measured by the walks of the energy ledger. At single points, in a caustic say, it may be more.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unseen {
+    /// The share.
+    pub share: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// Upper end of its 95 % interval.
+    pub at_most: f64,
+}
+
+impl fmt::Display for Unseen {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [share, error, most] =
+            [self.share, self.standard_error, self.at_most].map(|x| 100.0 * x);
+        write!(
+            f,
+            "on average over all surfaces that is {share:.2} ± {error:.2} % of the light there, at most {most:.2} %"
+        )
     }
 }
 

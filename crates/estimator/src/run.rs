@@ -1,6 +1,6 @@
 //! A run: replicas taken further in steps until a stopping rule holds.
 
-use crate::allocation::Allocation;
+use crate::allocation::{Allocation, Sharing};
 use crate::choose::{blind_spots, erratic, techniques};
 use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
@@ -99,7 +99,7 @@ pub fn resume(
     let alone = Ensemble {
         scenes: &[scene],
         covering: scene,
-        like: None,
+        sharing: Sharing::Points,
     };
     Ok(alone.run(settings, state, watch)?.first)
 }
@@ -115,16 +115,15 @@ pub struct Together {
 
 /// Evaluates `scenes`, one at least, all of which the same walks serve (see [`Cohort`](crate::Cohort)), along these.
 ///
-/// Stopping rules hold for the first of them. Walks are shared out between the sensors as in `like`, where it is given, so
-/// that the two are paired. Everything else is as in [`run`].
+/// Stopping rules hold for the first of them. Everything else is as in [`run`].
 pub fn run_together(
     scenes: &[&Scene],
     settings: &Settings,
-    like: Option<&Allocation>,
+    sharing: Sharing,
     watch: &mut dyn FnMut(&Progress) -> Answer,
 ) -> Together {
     let mut state = State::new(Shard::WHOLE);
-    let together = resume_together(scenes, settings, like, &mut state, &mut |progress, _| {
+    let together = resume_together(scenes, settings, sharing, &mut state, &mut |progress, _| {
         watch(progress)
     });
     together.expect("a state without walks fits every scene")
@@ -137,7 +136,7 @@ pub fn run_together(
 pub fn resume_together(
     scenes: &[&Scene],
     settings: &Settings,
-    like: Option<&Allocation>,
+    sharing: Sharing,
     state: &mut State,
     watch: &mut dyn FnMut(&Progress, &State) -> Answer,
 ) -> Result<Together, StateError> {
@@ -145,7 +144,7 @@ pub fn resume_together(
     let ensemble = Ensemble {
         scenes,
         covering: &covering,
-        like,
+        sharing,
     };
     ensemble.run(settings, state, watch)
 }
@@ -155,8 +154,8 @@ struct Ensemble<'a> {
     scenes: &'a [&'a Scene],
     /// The scene by which emitters are chosen.
     covering: &'a Scene,
-    /// How walks are shared out; `None`: a pilot finds it.
-    like: Option<&'a Allocation>,
+    /// How walks are shared out.
+    sharing: Sharing<'a>,
 }
 
 impl Ensemble<'_> {
@@ -199,7 +198,7 @@ fn run_with<const N: usize>(
     let Ensemble {
         scenes,
         covering: scene,
-        like,
+        sharing,
     } = *ensemble;
     let mirrors = scenes.iter().any(|it| has_mirrors(&it.materials));
     let channels = Channels::new(mirrors, settings, representation);
@@ -231,13 +230,14 @@ fn run_with<const N: usize>(
     let exact: Vec<Vec<[f64; N]>> = passes.main.variations.iter().map(exact).collect();
     let targets = targets(&scene.surfaces, &receivers);
     let aims = Aims::all(&passes, &receivers);
-    let allocation = match like {
-        Some(like) => like.clone(),
-        None if techniques.gather && techniques.local > 0.0 => {
+    let allocation = match sharing {
+        Sharing::Like(like) => like.clone(),
+        _ if techniques.gather && techniques.local > 0.0 => {
             let exact = |sensor: usize| exact[0][sensor][0];
-            Allocation::piloted(&passes, &receivers, &targets, &aims, exact, settings.seed)
+            let seed = settings.seed;
+            Allocation::piloted(&passes, &receivers, &targets, &aims, exact, seed, sharing)
         }
-        None => Allocation::even(receivers.len()),
+        _ => Allocation::even(receivers.len()),
     };
     let engine = Engine::<N> {
         passes,
@@ -316,11 +316,14 @@ fn run_with<const N: usize>(
     let tally = &state.walks;
     let relative_error_max = first.relative_error(tally);
     // The scalar model beside the diffuse one has mirrors of its own.
-    let mut warnings: Vec<String> = engine
-        .passes
-        .media()
-        .flat_map(|medium| blind_spots(medium, settings.estimator))
-        .collect();
+    let [main, apart] = [Some(&engine.passes.main), engine.passes.apart.as_ref()]
+        .map(|medium| medium.map_or_else(Vec::new, |it| blind_spots(it, settings.estimator)));
+    let unseen = (!main.is_empty()).then(|| ledger.unseen());
+    let mut warnings = main;
+    if let (Some(unseen), Some(last)) = (unseen, warnings.last_mut()) {
+        last.push_str(&format!("; {unseen}"));
+    }
+    warnings.extend(apart);
     warnings.extend(erratic(&engine, settings.estimator));
     if let Some(cells) = &cells {
         warnings.push(direct::warning(cells));
@@ -349,6 +352,7 @@ fn run_with<const N: usize>(
         stop,
         relative_error_max,
         energy: ledger.energy(engine.passes.main.materials),
+        unseen,
         warnings,
     };
     let others = 1..scenes.len();

@@ -269,6 +269,7 @@ impl<'a> Walk<'a> {
             connections: 0..0,
             event: Event::Absorbed,
             probability: 1.0,
+            facet: meeting.facet,
             black: meeting.black(),
             rival: Rival::default(),
         };

@@ -31,6 +31,19 @@ pub(crate) fn keeps_geometry(key: &[&str]) -> bool {
     }
 }
 
+/// Whether light takes the same ways in a scene in which only this key is another, but for how strong it is.
+pub(crate) fn keeps_ways(key: &[&str]) -> bool {
+    let moved = matches!(
+        key,
+        [
+            "source",
+            _,
+            "position" | "direction" | "distribution" | "cone_deg" | "blend"
+        ]
+    );
+    keeps_geometry(key) && !moved
+}
+
 impl Foundation {
     /// The scene of a file that differs from that of `base` only by keys that keep the geometry.
     ///

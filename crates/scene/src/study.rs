@@ -157,6 +157,13 @@ impl Study {
         numeric
     }
 
+    /// Whether something is moved or turned, so that light takes other ways.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        let mut keys = self.keys.iter();
+        keys.any(|varied| !foundation::keeps_ways(&varied.key.segments()))
+    }
+
     /// Digest of what varies: of all keys, and of all their values. The scene has a fingerprint of its own.
     #[must_use]
     pub fn digest(&self) -> u128 {

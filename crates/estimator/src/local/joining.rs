@@ -164,7 +164,7 @@ impl Joining<'_> {
                     weight *= vertex.rival.weight(
                         coupling,
                         diffuse,
-                        self.sensors.allocation.launched(sensor),
+                        self.sensors.allocation.rivalry(sensor),
                     );
                 }
                 let arrival = Arrival {
