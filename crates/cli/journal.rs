@@ -3,7 +3,7 @@
 //! A record is its length (8 bytes, little-endian), its bytes, and a SipHash-1-3 of them and of the checksum before
 //! (16 bytes), so that the last checksum stands for all of them.
 
-use crate::output::Directory;
+use crate::output::{Directory, unwritten};
 use anyhow::{Context, Result, anyhow};
 use serde::{Deserialize, Serialize};
 use siphasher::sip128::{Hasher128, SipHasher13};
@@ -257,10 +257,6 @@ fn damaged(path: &Path) -> anyhow::Error {
          .malus, and compute them again",
         path.display()
     )
-}
-
-fn unwritten(path: &Path) -> String {
-    format!("{}: cannot be written", path.display())
 }
 
 #[cfg(test)]

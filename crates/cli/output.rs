@@ -54,7 +54,7 @@ impl Directory {
                 .map_err(|error| error.into_error())?
                 .finish()
         };
-        filled().with_context(|| format!("{}: cannot be written", self.0.join(name).display()))
+        filled().with_context(|| unwritten(&self.0.join(name)))
     }
 
     /// Begins a file beside its place, to which [`Growing::finish`] moves it.
@@ -76,7 +76,7 @@ impl Directory {
     /// It cannot be made.
     pub fn growing(&self, name: &str) -> Result<File> {
         let path = self.0.join(name);
-        File::create(&path).with_context(|| format!("{}: cannot be written", path.display()))
+        File::create(&path).with_context(|| unwritten(&path))
     }
 
     /// Removes a file, if it is there, and what a program left of it that was ended while it wrote.
@@ -148,6 +148,11 @@ impl Drop for Growing {
         // Where it is finished it is no longer there; and of errors the first one is to be reported.
         let _ = fs::remove_file(&self.temporary);
     }
+}
+
+/// What is said of a file that could not be written; why follows.
+pub fn unwritten(path: &Path) -> String {
+    format!("{}: cannot be written", path.display())
 }
 
 /// Removes a file; that it is not there is no error: another machine may have had the same name for its own.

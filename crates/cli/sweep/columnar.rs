@@ -1,7 +1,7 @@
 //! `variants.parquet`: the rows of `variants.csv` as typed columns, written group by group.
 
 use super::variants::Row;
-use crate::output::{Directory, Growing};
+use crate::output::{Directory, Growing, unwritten};
 use anyhow::{Context, Result};
 use malus_scene::{Base, Study};
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
@@ -10,7 +10,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Fields of one row group, at most: they wait in memory until they are written.
@@ -193,8 +193,4 @@ fn doubles(
 /// Parquet's definition level: whether there is a value.
 fn level<T>(value: Option<T>) -> i16 {
     i16::from(value.is_some())
-}
-
-fn unwritten(path: &Path) -> String {
-    format!("{}: cannot be written", path.display())
 }

@@ -4,6 +4,7 @@ use super::columnar::Columnar;
 use super::results::Wanted;
 use crate::number::exact;
 use crate::outcome::{Groups, Outcome, Quantity};
+use crate::output::unwritten;
 use anyhow::{Context, Result};
 use malus_scene::{Base, Scene, Study};
 use std::fs::File;
@@ -145,7 +146,7 @@ impl Variants {
         self.file
             .write_record(row)
             .and_then(|()| Ok(self.file.flush()?))
-            .with_context(|| format!("{}: cannot be written", self.path.display()))
+            .with_context(|| unwritten(&self.path))
     }
 }
 

@@ -23,6 +23,14 @@ fn load(study: &str, files: &[(&str, &str)]) -> Result<Study, String> {
     Study::load(&folder.path().join("study.toml")).map_err(|error| told(&folder, &error))
 }
 
+/// A study that is right, with its base, in a folder that lives as long.
+fn opened(study: &str) -> (tempfile::TempDir, Study, Base) {
+    let folder = folder(study, &[]);
+    let study = Study::load(&folder.path().join("study.toml")).unwrap();
+    let base = study.base(&[]).unwrap();
+    (folder, study, base)
+}
+
 fn told(folder: &tempfile::TempDir, error: &Error) -> String {
     let path = format!("{}/", folder.path().display());
     error.to_string().replace(&path, "")
@@ -233,12 +241,8 @@ fn an_unknown_key_is_told_before_any_variant_is_loaded() {
 
 #[test]
 fn a_bad_value_is_a_doubt_and_fails_its_variant_alone() {
-    let folder = folder(
-        "[grid]\n\"material.plaster.a\" = [0.3, 1.5]\n\"shape.0.max\" = [[4, 3, 3]]",
-        &[],
-    );
-    let study = Study::load(&folder.path().join("study.toml")).unwrap();
-    let base = study.base(&[]).unwrap();
+    let (_folder, study, base) =
+        opened("[grid]\n\"material.plaster.a\" = [0.3, 1.5]\n\"shape.0.max\" = [[4, 3, 3]]");
     let wrong = "study.toml:3:30: [material.plaster] a must be a number from 0 to 1, found 1.5";
     assert_eq!(base.doubts.len(), 1);
     assert!(base.doubts[0].ends_with(wrong), "{}", base.doubts[0]);
@@ -259,13 +263,23 @@ fn a_bad_value_is_a_doubt_and_fails_its_variant_alone() {
 }
 
 #[test]
+fn what_moves_is_told_from_what_only_looks_otherwise() {
+    for (key, values, moves) in [
+        ("material.plaster.a", "[0.1, 0.3]", false),
+        ("source.0.intensity", "[5, 10]", false),
+        ("source.0.position", "[[1, 1, 2]]", true),
+        ("shape.0.max", "[[4, 3, 3]]", true),
+    ] {
+        let study = load(&format!("[grid]\n{key:?} = {values}"), &[]).unwrap();
+        assert_eq!(study.moves(), moves, "{key}");
+    }
+}
+
+#[test]
 fn variants_of_one_geometry_follow_each_other_and_share_it() {
-    let folder = folder(
+    let (folder, study, base) = opened(
         "[grid]\n\"material.plaster.a\" = [0.1, 0.3]\n\"shape.0.max\" = [[4, 3, 3], [4, 3, 2.8]]",
-        &[],
     );
-    let study = Study::load(&folder.path().join("study.toml")).unwrap();
-    let base = study.base(&[]).unwrap();
     let names: Vec<String> = study.variants().map(|it| it.name()).collect();
     assert_eq!(names, ["001", "003", "002", "004"]);
     let scenes: Vec<Scene> = study
