@@ -26,6 +26,8 @@ mod complete;
 mod panes;
 // Diffusers under a clear coat.
 mod coats;
+// What a line of sight carries.
+mod radiance;
 // More components than a scene requires change nothing.
 mod representations;
 // The same bytes whatever the threads, the steps and the interruptions.

@@ -112,10 +112,10 @@ fn a_damaged_shard_is_told_by_its_name() {
             "{told}"
         );
     }
-    std::fs::write(&path, b"malus state 2\n...").unwrap();
+    std::fs::write(&path, b"malus state 3\n...").unwrap();
     assert_told(
         &folder.unmerged(&["out"]),
-        &["is of form 2, this version of malus reads form 3"],
+        &["is of form 3, this version of malus reads form 4"],
     );
 }
 
