@@ -109,7 +109,9 @@ impl<'t> Ledger<'t> {
     /// How much of all light the run's estimator cannot see.
     #[must_use]
     pub(crate) fn unseen(&self) -> Unseen {
+        // Where no light meets anything none is missing.
         let met = self.tally.estimate(|means| means.at(MET)).mean;
+        let met = met.max(f64::MIN_POSITIVE);
         let Estimate {
             mean,
             standard_error,
