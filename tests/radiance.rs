@@ -8,20 +8,28 @@ use malus_estimator::Reading;
 use malus_optics::{Basis, Coated, Emergence, Incidence, Index, Material, Rotator, Sensor, Stokes};
 use std::f64::consts::PI;
 
-fn sight(scene: &str, at: &str, direction: DVec3, axis: &str, samples: u64) -> Reading {
+/// What the sensors of a scene read, the last of which looks from a point along a direction.
+fn sights(scene: &str, at: &str, direction: DVec3, samples: u64) -> Vec<Reading> {
+    let vector = |it: DVec3| format!("[{}, {}, {}]", it.x, it.y, it.z);
     measured(&format!(
         "{scene}
         [[sensor]]
         name = 'sight'
         quantity = 'radiance'
         points = [{at}]
-        direction = [{}, {}, {}]
-        axis = {axis}
+        direction = {}
+        axis = {}
         [run]
         representation = 'full'
         samples = {samples}",
-        direction.x, direction.y, direction.z
-    ))[0]
+        vector(direction),
+        vector(AXIS)
+    ))
+}
+
+/// The same where there is no other sensor.
+fn sight(scene: &str, at: &str, direction: DVec3, samples: u64) -> Reading {
+    sights(scene, at, direction, samples)[0]
 }
 
 const PANEL: &str = "
@@ -43,7 +51,7 @@ const AXIS: DVec3 = DVec3::new(0.2, 1.0, 0.4);
 #[test]
 fn a_radiance_looks_straight_at_a_lamp() {
     let looking = DVec3::new(0.2, -0.3, 1.0).normalize();
-    let reading = sight(PANEL, "[0, 0, 0]", looking, "[0.2, 1, 0.4]", 64);
+    let reading = sight(PANEL, "[0, 0, 0]", looking, 64);
     let emitted = Basis::<malus_optics::Carried>::new(-looking, DVec3::new(0.6, 0.8, 0.0));
     let sensor = Basis::<Sensor>::new(-looking, AXIS);
     let light = Rotator::new(&emitted, &sensor) * Stokes::<4, _>::new([1.0, 0.4, -0.5, 0.6]);
@@ -91,13 +99,7 @@ fn a_radiance_looks_at_a_lamp_in_a_mirror_at_brewsters_angle() {
         // tan θ = 1.5.
         let looking = DVec3::new(1.5 * 0.8, 1.5 * 0.6, -1.0).normalize();
         let scene = format!("{PANEL}{floor}");
-        let reading = sight(
-            &scene,
-            "[-0.8, -0.6, 0.6]",
-            looking,
-            "[0.2, 1, 0.4]",
-            262_144,
-        );
+        let reading = sight(&scene, "[-0.8, -0.6, 0.6]", looking, 262_144);
         let down = DVec3::new(-looking.x, -looking.y, looking.z);
         let lamp = Basis::<malus_optics::Carried>::new(down, DVec3::new(0.6, 0.8, 0.0));
         let light = Stokes::<4, _>::new([1.0, 0.4, -0.5, 0.6]);
@@ -125,13 +127,7 @@ fn a_radiance_looks_at_a_lamp_through_a_pane() {
         tau = 0.9\n";
     let looking = DVec3::new(1.2, 0.5, 1.0).normalize();
     let scene = format!("{PANEL}{sheet}");
-    let reading = sight(
-        &scene,
-        "[-0.8, -0.6, 0.6]",
-        looking,
-        "[0.2, 1, 0.4]",
-        65_536,
-    );
+    let reading = sight(&scene, "[-0.8, -0.6, 0.6]", looking, 65_536);
     let lamp = Basis::<malus_optics::Carried>::new(-looking, DVec3::new(0.6, 0.8, 0.0));
     let light = Stokes::<4, _>::new([1.0, 0.4, -0.5, 0.6]);
     let normal = DVec3::new(10.0, 1.0, 1.0).cross(DVec3::Y).normalize();
@@ -161,21 +157,7 @@ fn a_radiance_looks_at_a_lambert_wall() {
         normal = [1, 0, 0]";
     let looking = DVec3::new(-0.5, 0.1, 0.2);
     let text = format!("{ROOM}{walls}");
-    let both = |samples: u64| {
-        measured(&format!(
-            "{text}
-            [[sensor]]
-            name = 'sight'
-            quantity = 'radiance'
-            points = [[0.5, 0.4, 0.3]]
-            direction = [{}, {}, {}]
-            [run]
-            representation = 'full'
-            samples = {samples}",
-            looking.x, looking.y, looking.z
-        ))
-    };
-    let readings = both(131_072);
+    let readings = sights(&text, "[0.5, 0.4, 0.3]", looking, 131_072);
     let (wall, sight) = (&readings[2], &readings[3]);
     let factor = 0.6 / PI;
     let (l, error) = s0(sight);

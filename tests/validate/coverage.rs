@@ -72,9 +72,6 @@ pub fn print() {
     for (name, scene) in &scenes {
         report(name, scene);
     }
-    println!(
-        "\nThey do not hold everywhere. Where a point source is seen by two or three mirrors in turn through a narrow gap between them, few draws bring much of the light, and a run that has met none of them states too small an error: four gold plates that hide one another (`complete::mirrors_that_hide_one_another_make_no_image_where_they_do`), 131,072 samples, 20 seeds, six sensors: at the worst of them runs scatter by 10 % where half of them state less than 1.6 %, and deviations of up to 7.6 stated errors occur."
-    );
 }
 
 fn report(name: &str, scene: &Scene) {

@@ -62,16 +62,15 @@ pub fn planes() -> impl Iterator<Item = Row> {
         (0.5, 1.5, 0.9, 49_152, Some((1.516_864_96, 1.551_665_49))),
         (0.5, 3.0, 0.9, 32_768, Some((1.719_757_70, 2.002_682_83))),
     ];
-    table
-        .into_iter()
-        .flat_map(move |(rho, n, f, samples, tabulated)| {
-            let mut rows = Vec::new();
-            let (without, with) = flux(rho, n, f);
-            if let Some((other_without, other_with)) = tabulated {
-                assert!((without - other_without).abs() < 1e-8 && (with - other_with).abs() < 1e-8);
-            }
-            let readings = crate::closed::measured(&format!(
-                "{shapes}
+    table.into_iter().flat_map(move |row| {
+        let (rho, n, f, samples, tabulated) = row;
+        let mut rows = Vec::new();
+        let (without, with) = flux(rho, n, f);
+        if let Some((other_without, other_with)) = tabulated {
+            assert!((without - other_without).abs() < 1e-8 && (with - other_with).abs() < 1e-8);
+        }
+        let readings = crate::closed::measured(&format!(
+            "{shapes}
             [material.plane]
             rho = {rho}
             a = {f}
@@ -90,45 +89,44 @@ pub fn planes() -> impl Iterator<Item = Row> {
             normal = [0, 0, 1]
             [run]
             samples = {samples}"
-            ));
-            let count = readings.len() as f64;
-            // Sensors share the walks from the emitter, which bring little here: their errors are taken as independent.
-            let mean = |of: &dyn Fn(&Reading) -> (f64, f64)| {
-                let values = readings.iter().map(of);
-                let (sum, squares) = values.fold((0.0, 0.0), |(s, q), (value, error)| {
-                    (s + value, q + error * error)
-                });
-                (
-                    sum / count / (2.0 * PI),
-                    squares.sqrt() / count / (2.0 * PI),
-                )
-            };
-            let mut push = |what: &str, expected, (got, error)| {
-                rows.push(Row {
-                    what: format!("ρ = {rho}, n = {n}, f = {f}, {what}"),
-                    source: "parallel planes",
-                    expected,
-                    got,
-                    error,
-                    test: "direct, complete",
-                });
-            };
-            push(
-                "Stokes",
-                with,
-                mean(&|r| (r.stokes[0], r.standard_error[0])),
-            );
-            let scalar = |r: &Reading| r.scalar.unwrap();
-            push(
-                "scalar",
-                without,
-                mean(&|r| (scalar(r).value, scalar(r).standard_error)),
-            );
-            let difference =
-                |r: &Reading| (scalar(r).difference, scalar(r).difference_standard_error);
-            push("difference", with - without, mean(&difference));
-            rows
-        })
+        ));
+        let count = readings.len() as f64;
+        // Sensors share the walks from the emitter, which bring little here: their errors are taken as independent.
+        let mean = |of: &dyn Fn(&Reading) -> (f64, f64)| {
+            let values = readings.iter().map(of);
+            let (sum, squares) = values.fold((0.0, 0.0), |(s, q), (value, error)| {
+                (s + value, q + error * error)
+            });
+            (
+                sum / count / (2.0 * PI),
+                squares.sqrt() / count / (2.0 * PI),
+            )
+        };
+        let mut push = |what: &str, expected, (got, error)| {
+            rows.push(Row {
+                what: format!("ρ = {rho}, n = {n}, f = {f}, {what}"),
+                source: "parallel planes",
+                expected,
+                got,
+                error,
+                test: "direct, complete",
+            });
+        };
+        push(
+            "Stokes",
+            with,
+            mean(&|r| (r.stokes[0], r.standard_error[0])),
+        );
+        let scalar = |r: &Reading| r.scalar.unwrap();
+        push(
+            "scalar",
+            without,
+            mean(&|r| (scalar(r).value, scalar(r).standard_error)),
+        );
+        let difference = |r: &Reading| (scalar(r).difference, scalar(r).difference_standard_error);
+        push("difference", with - without, mean(&difference));
+        rows
+    })
 }
 
 /// Flux on a plane over 2π I0 without and with polarisation: B/(1 − (1 − f) ρ A) with A = ∫ 2μ g dμ and B = ∫ g dμ, where

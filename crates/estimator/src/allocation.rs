@@ -47,10 +47,9 @@ const LOOK: f64 = 4.0;
 const IN_DIFFERENCES: f64 = 0.2;
 
 /// By what walks are shared out between the emitters and the sensors.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sharing<'a> {
     /// What brings each sensor point to its error at the least cost, as a pilot finds it.
-    #[default]
     Points,
     /// What serves means over many points, and their differences between scenes of which each has walks of its own.
     ///
@@ -299,7 +298,7 @@ impl Pilot<'_> {
                     Observer {
                         receiver: &self.receivers[sensor],
                         aims: &self.aims[sensor],
-                        launched: self.tried.rivalry(sensor),
+                        rivalry: self.tried.rivalry(sensor),
                     },
                     stream.branch(sensor as u64),
                     0..self.walks,

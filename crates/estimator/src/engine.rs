@@ -144,7 +144,7 @@ impl<const N: usize> Engine<'_, N> {
                     Observer {
                         receiver,
                         aims: &self.aims[sensor],
-                        launched: self.allocation.rivalry(sensor),
+                        rivalry: self.allocation.rivalry(sensor),
                     },
                     stream,
                     walks(taken)..walks(until),

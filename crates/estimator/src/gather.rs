@@ -20,7 +20,7 @@ pub(crate) struct Observer<'a> {
     /// How the companions of its walks are aimed.
     pub aims: &'a Aims<'a>,
     /// Weight of walks from the emitters against its own.
-    pub launched: f64,
+    pub rivalry: f64,
 }
 
 /// Adds the walks `range` of one sensor to its sums, those of one variant after those of the other.
@@ -35,10 +35,10 @@ pub(crate) fn gather<const N: usize>(
     let Observer {
         receiver,
         aims,
-        launched,
+        rivalry,
     } = observer;
     let techniques = Techniques {
-        local: launched * passes.techniques.local,
+        local: rivalry * passes.techniques.local,
         ..passes.techniques
     };
     let mut effort = Effort::default();

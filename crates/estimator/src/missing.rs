@@ -1,4 +1,4 @@
-//! Light that an estimator cannot see, as walks from the emitters tell it.
+//! Light that an estimator cannot see, as walks from the emitters tell it: what `choose::blind_spots` says in words.
 
 use crate::emitters::Start;
 use crate::path::{Event, Vertex};
@@ -39,7 +39,7 @@ impl Trail {
                 self.mirrored = false;
             }
             Event::Mirror => {
-                let looked_into = self.estimator == Estimator::Auto && vertex.facet.is_some();
+                let looked_into = self.estimator == Estimator::Auto && vertex.flat;
                 self.mirrored |= !looked_into;
                 self.hidden |= !looked_into && !self.scattered && self.pointlike;
             }

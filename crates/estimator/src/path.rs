@@ -63,8 +63,8 @@ pub(crate) struct Vertex {
     pub event: Event,
     /// Probability of that event.
     pub probability: f64,
-    /// The flat mirror met, if it is one that can be looked into.
-    pub facet: Option<u32>,
+    /// Whether it is a flat mirror that can be looked into.
+    pub flat: bool,
     /// True where the back of a one-sided surface was met: it neither reflects nor emits.
     pub black: bool,
     /// For a walk from an emitter: the techniques that compete with joining this point to a sensor.

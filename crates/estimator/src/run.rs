@@ -316,14 +316,14 @@ fn run_with<const N: usize>(
     let tally = &state.walks;
     let relative_error_max = first.relative_error(tally);
     // The scalar model beside the diffuse one has mirrors of its own.
-    let [main, apart] = [Some(&engine.passes.main), engine.passes.apart.as_ref()]
-        .map(|medium| medium.map_or_else(Vec::new, |it| blind_spots(it, settings.estimator)));
-    let unseen = (!main.is_empty()).then(|| ledger.unseen());
-    let mut warnings = main;
-    if let (Some(unseen), Some(last)) = (unseen, warnings.last_mut()) {
+    let blind = |medium: &Medium| blind_spots(medium, settings.estimator);
+    let mut warnings = blind(&engine.passes.main);
+    let unseen = warnings.last_mut().map(|last| {
+        let unseen = ledger.unseen();
         last.push_str(&format!("; {unseen}"));
-    }
-    warnings.extend(apart);
+        unseen
+    });
+    warnings.extend(engine.passes.apart.iter().flat_map(blind));
     warnings.extend(erratic(&engine, settings.estimator));
     if let Some(cells) = &cells {
         warnings.push(direct::warning(cells));

@@ -269,7 +269,7 @@ impl<'a> Walk<'a> {
             connections: 0..0,
             event: Event::Absorbed,
             probability: 1.0,
-            facet: meeting.facet,
+            flat: meeting.facet.is_some(),
             black: meeting.black(),
             rival: Rival::default(),
         };
