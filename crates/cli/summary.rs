@@ -97,7 +97,7 @@ struct Unseen {
 /// What each way of finding light has brought, as shares of S0 summed over the free sensor points.
 #[derive(Serialize)]
 struct Techniques {
-    /// Straight from sources without geometry, summed exactly.
+    /// Summed exactly: sources without geometry, straight and by their images in few flat mirrors, and emitters seen whole.
     exact: f64,
     /// Walks from the sensors that looked at emitters.
     looked: f64,

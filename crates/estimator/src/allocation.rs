@@ -38,6 +38,9 @@ const EVEN: f64 = 3.0;
 /// Walks from one sensor that tell as much of its variance as the mean over all sensors does.
 const TELLING: f64 = 16.0;
 
+/// The same where nothing is scattered and sensors see lamps by mirrors alone, of which each has some of its own.
+const TELLING_BETWEEN_MIRRORS: f64 = 4.0;
+
 /// Cost of a ray, of joining a vertex to a sensor, and of looking into mirrors from a vertex, relative to each other.
 const RAY: f64 = 1.0;
 const JOIN: f64 = 0.2;
@@ -170,8 +173,12 @@ impl Allocation {
         // So few walks seldom meet what is rare and bright, and then at few sensors: what one has met warns the others.
         let gathered = needs.iter().map(|n| n.gathered).sum::<f64>() / needs.len().max(1) as f64;
         let own = f64::from(ROUNDS) * walks as f64;
+        let telling = match needs.iter().all(|n| n.launched <= 0.0) {
+            true => TELLING_BETWEEN_MIRRORS,
+            false => TELLING,
+        };
         for need in &mut needs {
-            need.gathered = (own * need.gathered + TELLING * gathered) / (own + TELLING);
+            need.gathered = (own * need.gathered + telling * gathered) / (own + telling);
         }
         let launched = f64::from(ROUNDS) * LAUNCHED as f64;
         let cost_launched = rounds.iter().map(|r| r.cost_launched).sum::<f64>() / launched;

@@ -9,7 +9,7 @@ use crate::spread::Spread;
 use crate::variation::Variation;
 use glam::DVec3;
 use malus_geometry::{Hit, Surfaces};
-use malus_optics::{Reflection, angle_of_incidence};
+use malus_optics::{Material as Optics, Reflection, angle_of_incidence};
 use malus_scene::Material;
 
 /// What a walk moves through.
@@ -48,6 +48,33 @@ pub(crate) struct Step {
     pub matrix: Reflection,
     /// Whether the light goes on straight.
     pub through: bool,
+}
+
+impl Step {
+    /// The same surface met along a direction, if this is what it does to light.
+    #[inline]
+    pub(crate) fn met(&self, arriving: DVec3, optics: &Optics) -> Self {
+        let (cos, sin2) = angle_of_incidence(arriving, self.normal);
+        Self {
+            arriving,
+            matrix: match self.through {
+                true => optics.through(cos, sin2),
+                false => optics.mirror(cos, sin2),
+            },
+            ..*self
+        }
+    }
+
+    /// Direction of tracing behind it.
+    fn onward(&self) -> DVec3 {
+        match self.through {
+            true => self.arriving,
+            false => {
+                let cos = angle_of_incidence(self.arriving, self.normal).0;
+                (self.arriving + self.normal * (2.0 * cos)).normalize()
+            }
+        }
+    }
 }
 
 /// How a surface is met.
@@ -241,6 +268,44 @@ impl<'a> Medium<'a> {
             arriving: toward,
             odds: odds * passage.odds,
             drawn: 1.0,
+        })
+    }
+
+    /// The way from a viewer to a source without area by a chain of mirrors, where there is one.
+    ///
+    /// It is traced to a point beside the source, so that one of two mirrors is sure to be met where they meet; the light
+    /// comes from the source itself.
+    pub(crate) fn way_to(
+        &self,
+        viewer: &Viewer,
+        site: &Site,
+        chain: &[u32],
+        steps: &mut Vec<Step>,
+    ) -> Option<Way> {
+        let strength = |leaving, square| site.irradiance(leaving, square);
+        let beside = target(site, self.surfaces.radius(), &strength);
+        if !self.mirrors.leads(viewer, &beside, chain) {
+            return None;
+        }
+        let way = self.chained(viewer, &beside, chain, steps)?;
+        let at = site.from.unwrap_or(-site.direction());
+        let image = self.mirrors.image(chain, &Target { at, ..beside });
+        let span = match beside.finite {
+            true => image - viewer.point,
+            false => image,
+        };
+        let square = span.length_squared();
+        let start = span / square.sqrt();
+        let mut arriving = start;
+        for step in steps {
+            *step = step.met(arriving, &self.materials[step.surface as usize].optics);
+            arriving = step.onward();
+        }
+        Some(Way {
+            start,
+            square,
+            arriving,
+            ..way
         })
     }
 

@@ -6,6 +6,7 @@
 //! outlines leave, which has a closed form. Whether a surface is really there, and nothing before it, is for rays to
 //! tell once the chain is chosen.
 
+mod image_sources;
 mod images;
 mod view;
 
@@ -13,7 +14,10 @@ use crate::cover::Cover;
 use crate::direction::cosine_weighted;
 use crate::random::{Fresh, Uniforms};
 use glam::DVec3;
+pub(crate) use image_sources::ImageSource;
+use image_sources::ImageSources;
 use malus_geometry::{Facet, Facets, Surfaces};
+use malus_scene::Source;
 use std::f64::consts::PI;
 use view::{Ray, View};
 
@@ -67,6 +71,8 @@ pub(crate) struct Mirrors {
     spread: f64,
     /// Distance within which two images are one, in m.
     apart: f64,
+    /// What sensors need not draw.
+    image_sources: ImageSources,
 }
 
 /// What a chain of mirrors is to lead to.
@@ -103,8 +109,8 @@ pub(crate) enum Drawn {
 }
 
 impl Mirrors {
-    /// The mirrors of a scene whose surfaces have these reflectors.
-    pub(crate) fn new(surfaces: &Surfaces, covers: &[Cover]) -> Self {
+    /// The mirrors of a scene whose surfaces have these reflectors, and which is lit by these sources.
+    pub(crate) fn new(surfaces: &Surfaces, covers: &[Cover], sources: &[Source]) -> Self {
         let wanted: Vec<bool> = covers.iter().map(Cover::is_mirrorlike).collect();
         let radius = surfaces.radius();
         let least = LEAST * 4.0 * PI * radius * radius;
@@ -132,14 +138,27 @@ impl Mirrors {
             .map(|facet| covers[surfaces.surface(facet.triangle) as usize].clone())
             .collect();
         let share = |part: f64| if area > 0.0 { part / area } else { 0.0 };
-        Self {
+        let mut mirrors = Self {
             unseen: share(unseen),
             look: (LOOK * share(seen)).clamp(LEAST_LOOK, 1.0),
             facets,
             covers: of_facets,
             spread: images::SPREAD * radius,
             apart: APART * radius,
-        }
+            image_sources: ImageSources::default(),
+        };
+        mirrors.image_sources = ImageSources::new(&mirrors, sources);
+        mirrors
+    }
+
+    /// Images of sources without geometry whose light sensors receive without chance.
+    pub(crate) fn image_sources(&self) -> &[ImageSource] {
+        &self.image_sources.list
+    }
+
+    /// Whether these are all, so that a sensor need not look for others.
+    pub(crate) fn all_images_are_listed(&self) -> bool {
+        self.image_sources.complete
     }
 
     /// A mirror.
@@ -173,7 +192,7 @@ impl Mirrors {
     /// Draws ways by mirrors that may lead the viewer to the target; `found` is given each, with one over the probability
     /// of the draw.
     ///
-    /// Every way has a chance; the mean of what it brings, times that inverse, is the sum over all. A short chain is drawn
+    /// Every way that is not known has a chance; the mean of what it brings, times that inverse, is the sum over all. A short chain is drawn
     /// as such, by its beam. Of longer ones many orders of the same mirrors make the same image, each for a sliver of
     /// directions, so there the image is drawn: its probability is that of a cone of directions about it to lead to it by
     /// any order, and one over that is estimated without bias by how many tries that takes.
@@ -190,16 +209,26 @@ impl Mirrors {
         if self.is_empty() || look >= look_odds {
             return;
         }
+        let known = match viewer.sensor && !target.area {
+            true if self.image_sources.complete => return,
+            true => self.image_sources.longest,
+            false => 0,
+        };
         let direction = cosine_weighted(viewer.normal, [s, t]);
         let mut ray = Ray::new(viewer, direction);
         let mut view = View::new(viewer);
         // Probability that a ray through the chain so far is followed through it, by the choices that this one took.
         let mut followed = look_odds;
-        for order in 0..LONGEST_CHAIN {
+        let beams = match target.beam(known + 1) {
+            true => LONGEST_CHAIN,
+            false => 0,
+        };
+        for order in 0..beams {
             let [last, ..] = uniforms.in_chain(depth, order);
             let [test, onward, select, _] = uniforms.in_chain(depth, order | 1 << 31);
             let odds = tested(order + 1);
             if test < odds
+                && order as usize + 1 > known
                 && let Some((facet, share)) = self.last(&view, target, last)
             {
                 let mut facets = view.facets.clone();
@@ -215,7 +244,7 @@ impl Mirrors {
             let Some((facet, chosen)) = self.met(&ray, select) else {
                 break;
             };
-            let goes_on = self.onward(viewer, order as usize, facet, ray.direction);
+            let goes_on = self.onward(viewer, order as usize, known, facet, ray.direction);
             if onward >= goes_on {
                 break;
             }
@@ -227,7 +256,7 @@ impl Mirrors {
             ray.reflect(facet, self.facet(facet));
         }
         if target.has_images() {
-            self.draw_images(viewer, target, uniforms, depth, look_odds, found);
+            self.draw_images(viewer, target, uniforms, depth, (look_odds, known), found);
         }
     }
 
@@ -279,8 +308,13 @@ impl Mirrors {
         })
     }
 
-    /// Probability with which a ray, of any length, is followed behind a mirror, the one of that order in its chain.
-    fn onward(&self, viewer: &Viewer, order: usize, facet: u32, ray: DVec3) -> f64 {
+    /// Probability with which a ray, of any length, is followed behind a mirror, the one of that order in its chain, to images
+    /// behind more than `known`.
+    fn onward(&self, viewer: &Viewer, order: usize, known: usize, facet: u32, ray: DVec3) -> f64 {
+        // No image is looked at before, so there is nothing to be saved.
+        if order < known {
+            return 1.0;
+        }
         let bound = self.bound(facet, ray);
         // What polarisation changes of what a sensor sees comes by two mirrors, and sensors look seldom.
         let least = if viewer.sensor && order == 0 {
@@ -308,7 +342,7 @@ impl Mirrors {
         };
         let mut odds = 1.0;
         for (order, &facet) in before.iter().enumerate() {
-            odds *= self.onward(viewer, order, facet, ray);
+            odds *= self.onward(viewer, order, 0, facet, ray);
             ray = self.facets.list()[facet as usize].mirrored(ray);
         }
         odds

@@ -138,7 +138,7 @@ impl Modelled {
         let covers = covers(scenes, model);
         let variation = |scene: &&Scene| Variation::new(scene, covering, model);
         let variations: Vec<Variation> = scenes.iter().map(variation).collect();
-        let mirrors = Mirrors::new(&covering.surfaces, &covers);
+        let mirrors = Mirrors::new(&covering.surfaces, &covers, &covering.sources);
         Self {
             glints: Glints::new(&covering.surfaces, &covers, &mirrors),
             mirrors,

@@ -1,16 +1,12 @@
 //! From tallies to readings: means with their errors, and what pairs of models say together.
 
 use crate::allocation::Allocation;
+use crate::exact::Known;
 use crate::pass::Channels;
 use crate::receiver::Receiver;
 use crate::results::{Group, Paired, Reading, Replicates, Shares};
 use crate::statistics::{Estimate, Means, Replica, Tally, degree_of_linear_polarisation};
 use malus_scene::Scene;
-
-/// Components, padded to four.
-pub(crate) fn padded<const N: usize>(stokes: &[f64; N]) -> [f64; 4] {
-    std::array::from_fn(|component| stokes.get(component).copied().unwrap_or(0.0))
-}
 
 /// How the sums of a run are read.
 pub(crate) struct Readings<'a> {
@@ -18,8 +14,8 @@ pub(crate) struct Readings<'a> {
     pub channels: Channels,
     pub receivers: &'a [Receiver],
     pub allocation: &'a Allocation,
-    /// What is known without chance, one Stokes vector a sensor; S0 is the same in every model.
-    pub exact: Vec<[f64; 4]>,
+    /// What is known without chance.
+    pub known: &'a Known,
     /// One entry a sensor.
     pub unmet: Vec<Unmet>,
     /// Whether light is counted in cells, not joined to the sensors.
@@ -101,7 +97,7 @@ impl<'a> Readings<'a> {
                 tally.estimate(read).mean
             };
             let [mirrored, met] = [0, 1].map(|found| part(self.channels.found + found, 0));
-            shares.exact += self.exact[sensor][0];
+            shares.exact += self.known.at(sensor, 0);
             shares.looked += part(0, 0) - mirrored - met;
             shares.mirrored += mirrored;
             shares.met += met;
@@ -140,7 +136,7 @@ impl<'a> Readings<'a> {
 
     fn s0(&self, tally: &Tally, sensor: usize, hidden: f64) -> Estimate {
         let mut estimate = tally.estimate(|means| self.at(means, sensor, 0));
-        estimate.mean += self.exact[sensor][0];
+        estimate.mean += self.known.at(sensor, 0);
         estimate.standard_error = widened(estimate.standard_error, hidden);
         estimate
     }
@@ -206,14 +202,17 @@ impl<'a> Readings<'a> {
             let at = |&sensor: &usize| self.at(means, sensor, channel);
             free.iter().map(at).sum::<f64>() / count
         };
-        let exact = free.iter().map(|&s| self.exact[s][0]).sum::<f64>() / count;
+        let known = |channel: usize| {
+            let at = |&sensor: &usize| self.known.at(sensor, channel);
+            free.iter().map(at).sum::<f64>() / count
+        };
         let main = tally.estimate(|means| mean(means, 0));
         // Points are walked from independently, so a mean over them has as many times the walks.
         let walks: f64 = free.iter().map(|&s| self.walks(tally, s)).sum();
         let unmet = Unmet::mean(free.iter().map(|&s| self.unmet[s]));
         let variance = unmet.variance(walks.max(1.0));
         let widened = |error| widened(error, variance);
-        let paired = |channel| Paired::new(tally, exact, channel, mean, widened);
+        let paired = |channel| Paired::new(tally, known, channel, mean, widened);
         let readings: Vec<Reading> = range
             .clone()
             .map(|s| self.reading(tally, s, hidden[s]))
@@ -223,16 +222,17 @@ impl<'a> Readings<'a> {
             .iter()
             .copied()
             .min_by(|&a, &b| s0(a).total_cmp(&s0(b)));
-        let at_darkest =
-            |sensor: usize| tally.values(|means| self.at(means, sensor, 0) + self.exact[sensor][0]);
-        let means = |channel| tally.values(|means| mean(means, channel) + exact);
+        let at_darkest = |sensor: usize| {
+            tally.values(|means| self.at(means, sensor, 0) + self.known.at(sensor, 0))
+        };
+        let means = |channel| tally.values(|means| mean(means, channel) + known(channel));
         let replicates = Replicates {
             mean: means(0),
             min: darkest.map_or_else(Vec::new, at_darkest),
             scalar: self.channels.scalar.map_or_else(Vec::new, means),
         };
         Group {
-            mean: main.mean + exact,
+            mean: main.mean + known(0),
             mean_standard_error: widened(main.standard_error),
             scalar: self.channels.scalar.map(paired),
             diffuse: self.channels.diffuse.map(paired),
@@ -247,11 +247,11 @@ impl<'a> Readings<'a> {
             true => error,
             false => widened(error, hidden),
         };
-        let mut stokes = self.exact[sensor];
+        let mut stokes = [0.0; 4];
         let mut standard_error = [0.0; 4];
         for component in 0..self.channels.components {
             let estimate = tally.estimate(|means| self.at(means, sensor, component));
-            stokes[component] += estimate.mean;
+            stokes[component] = estimate.mean + self.known.at(sensor, component);
             standard_error[component] = widened(estimate.standard_error);
         }
         let dolp = if self.channels.components > 1 {
@@ -266,8 +266,8 @@ impl<'a> Readings<'a> {
             }
         };
         let at = |means: &Means, channel: usize| self.at(means, sensor, channel);
-        let exact = self.exact[sensor][0];
-        let paired = |channel| Paired::new(tally, exact, channel, at, widened);
+        let known = |channel: usize| self.known.at(sensor, channel);
+        let paired = |channel| Paired::new(tally, known, channel, at, widened);
         Reading {
             enclosed,
             stokes,
@@ -285,11 +285,11 @@ impl<'a> Readings<'a> {
 }
 
 impl Paired {
-    /// A channel beside the main model's S0, both read by `at`; the `exact` part is the same in both.
+    /// A channel beside the main model's S0, both read by `at` and `known` in part.
     /// Errors are `widened` by what may not have been met, but where the two models are one and the same.
     fn new(
         tally: &Tally,
-        exact: f64,
+        known: impl Fn(usize) -> f64,
         channel: usize,
         at: impl Fn(&Means, usize) -> f64,
         widened: impl Fn(f64) -> f64,
@@ -297,9 +297,9 @@ impl Paired {
         let other = tally.estimate(|means| at(means, channel));
         let difference = tally.estimate(|means| at(means, 0) - at(means, channel));
         Self {
-            value: other.mean + exact,
+            value: other.mean + known(channel),
             standard_error: widened(other.standard_error),
-            difference: difference.mean,
+            difference: difference.mean + (known(0) - known(channel)),
             difference_standard_error: if channel == 0 {
                 0.0
             } else {

@@ -45,7 +45,7 @@ pub struct Results {
 /// What each way of finding light has brought, as shares of S0 summed over all free sensor points.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Shares {
-    /// Straight from sources without geometry, summed exactly.
+    /// Summed exactly: sources without geometry, straight and by their images in few flat mirrors, and emitters seen whole.
     pub exact: f64,
     /// Emitters that walks from the sensors looked at.
     pub looked: f64,

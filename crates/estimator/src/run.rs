@@ -5,20 +5,20 @@ use crate::choose::{blind_spots, erratic, techniques};
 use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
-use crate::exact;
+use crate::exact::{self, Known};
 use crate::gather::Aims;
 use crate::ledger::Ledger;
 use crate::local::targets;
 use crate::medium::Medium;
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
-use crate::reading::{Readings, Unmet, padded};
+use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
 use crate::results::{Answer, Group, Progress, Results, Stop};
 use crate::sight::Sight;
 use crate::state::{Shard, State, StateError};
 use crate::statistics::REPLICAS;
 use crate::trace::LONGEST;
-use crate::variation::{Variation, covering};
+use crate::variation::covering;
 use malus_optics::Representation;
 use malus_scene::{Estimator, Model, Scene, Settings};
 
@@ -222,18 +222,20 @@ fn run_with<const N: usize>(
     let sight = techniques
         .gather
         .then(|| Sight::new(&scene.surfaces, &emitters, &mut receivers));
-    let exact = |variation: &Variation| match cells {
+    let known = match cells {
         // Counted like all other light.
-        Some(_) => vec![[0.0; N]; receivers.len()],
-        None => exact::straight::<N>(&passes.main, &receivers, sight.as_ref(), variation),
+        Some(_) => {
+            let nothing = |_| Known::nothing(&channels, receivers.len());
+            (0..scenes.len()).map(nothing).collect()
+        }
+        None => exact::known::<N>(&passes, &channels, &receivers, sight.as_ref()),
     };
-    let exact: Vec<Vec<[f64; N]>> = passes.main.variations.iter().map(exact).collect();
     let targets = targets(&scene.surfaces, &receivers);
     let aims = Aims::all(&passes, &receivers);
     let allocation = match sharing {
         Sharing::Like(like) => like.clone(),
         _ if techniques.gather && techniques.local > 0.0 => {
-            let exact = |sensor: usize| exact[0][sensor][0];
+            let exact = |sensor: usize| known[0].at(sensor, 0);
             let seed = settings.seed;
             Allocation::piloted(&passes, &receivers, &targets, &aims, exact, seed, sharing)
         }
@@ -259,7 +261,7 @@ fn run_with<const N: usize>(
         channels,
         receivers: &receivers,
         allocation: &allocation,
-        exact: exact[variant].iter().map(padded).collect(),
+        known: &known[variant],
         unmet: unmet.clone(),
         counted: cells.is_some(),
         shared: techniques.mirrored,

@@ -136,8 +136,9 @@ impl<'a> Walk<'a> {
         let (direction, lookout) = if receiver.is_irradiance() {
             let [_, u, v, _] = uniforms.at(0, Purpose::Search);
             let direction = cosine_weighted(normal, [u, v]);
-            // Light straight from sources without geometry is summed exactly, but in mirrors it is looked for.
-            let choice = if techniques.mirrored && !medium.mirrors.is_empty() {
+            // Light of sources without geometry is summed exactly, but not in long chains of mirrors.
+            let listed = medium.mirrors.all_images_are_listed();
+            let choice = if techniques.mirrored && !listed {
                 Choice::All
             } else {
                 Choice::Areas
@@ -193,7 +194,7 @@ impl<'a> Walk<'a> {
     pub(crate) fn look(&self, path: &mut Path<'a>) {
         if let Role::Looking(lookout) = &self.role
             && !lookout.alone
-            && !(lookout.seen.everything() && lookout.choice == Choice::Areas)
+            && (!lookout.seen.everything() || self.looks_into_mirrors())
         {
             let look = Look {
                 viewer: lookout.viewer,
@@ -203,6 +204,11 @@ impl<'a> Walk<'a> {
             };
             self.connect(path, &look, &|_| 0.0);
         }
+    }
+
+    /// Whether its points look for emitters in mirrors.
+    fn looks_into_mirrors(&self) -> bool {
+        self.techniques.mirrored && !self.medium.mirrors.is_empty()
     }
 
     /// Where the walk goes on from, and its direction: of one that has left the scene, the ray on which it left.

@@ -3,7 +3,6 @@
 use crate::cover::Cover;
 use crate::medium::Step;
 use crate::pass::materials_of;
-use malus_optics::angle_of_incidence;
 use malus_scene::{Material, Model, Scene, Source, SourceKind};
 use std::sync::Arc;
 
@@ -77,14 +76,7 @@ impl Variation {
             return *step;
         }
         let optics = &self.materials[step.surface as usize].optics;
-        let (cos, sin2) = angle_of_incidence(step.arriving, step.normal);
-        Step {
-            matrix: match step.through {
-                true => optics.through(cos, sin2),
-                false => optics.mirror(cos, sin2),
-            },
-            ..*step
-        }
+        step.met(step.arriving, optics)
     }
 }
 

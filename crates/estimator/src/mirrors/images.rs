@@ -39,7 +39,7 @@ impl Mirrors {
         target: &Target,
         uniforms: Uniforms,
         depth: u32,
-        look_odds: f64,
+        (look_odds, known): (f64, usize),
         mut found: impl FnMut(Drawn, f64),
     ) {
         let [s, t, ..] = uniforms.in_chain(depth, 1 << 30);
@@ -51,10 +51,10 @@ impl Mirrors {
             let Some((facet, _)) = self.met(&ray, select) else {
                 return;
             };
-            let goes_on = self.onward(viewer, order as usize, facet, ray.direction);
+            let goes_on = self.onward(viewer, order as usize, known, facet, ray.direction);
             ray.reflect(facet, self.facet(facet));
             let odds = tested(order + 1);
-            if !target.beam(ray.facets.len()) && test < odds {
+            if !target.beam(ray.facets.len()) && ray.facets.len() > known && test < odds {
                 let image = self.image(&ray.facets, target);
                 let tries = uniforms.fresh(depth, order);
                 if let Some(inverse) = self.tried(viewer, target, direction, image, &ray, tries) {

@@ -91,7 +91,7 @@ impl<'a> Walk<'a> {
         } else {
             path.steps.truncate(first);
         }
-        if !self.techniques.mirrored || mirrors.is_empty() {
+        if !self.looks_into_mirrors() {
             return;
         }
         let strength = |leaving, square| site.irradiance(leaving, square);
