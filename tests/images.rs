@@ -4,7 +4,7 @@ use crate::experiment::{measured, repository};
 use glam::DVec3;
 use malus_estimator::Reading;
 use malus_optics::{
-    Basis, Carried, Emergence, Incidence, Material, Reflection, Rotator, Sensor, Stokes,
+    Basis, Carried, Emergence, Incidence, Index, Material, Reflection, Rotator, Sensor, Stokes,
     angle_of_incidence,
 };
 
@@ -34,6 +34,48 @@ pub struct Eye {
     pub normal: DVec3,
     pub axis: DVec3,
     pub fixed: bool,
+}
+
+/// What mirrors a part of the light and scatters nothing.
+pub fn mirror(fraction: f64, n: f64, k: f64) -> Material {
+    Material::Mixture {
+        rho: 0.0,
+        fraction,
+        index: Index::new(n, k),
+    }
+}
+
+/// A point source of elliptically polarised light.
+pub fn point(at: DVec3) -> Source {
+    Source {
+        at,
+        finite: true,
+        strength: 3.0,
+        state: [1.0, 0.4, -0.5, 0.6],
+        axis: DVec3::new(0.6, 0.8, 0.1),
+    }
+}
+
+/// Parallel light of the same state from a direction.
+pub fn parallel(from: DVec3) -> Source {
+    Source {
+        at: from.normalize(),
+        finite: false,
+        ..point(from)
+    }
+}
+
+/// Sensors at places with their normals, each with both frames.
+pub fn eyes(places: &[(DVec3, DVec3)]) -> Vec<Eye> {
+    let both = |&(at, normal): &(DVec3, DVec3)| {
+        [false, true].map(|fixed| Eye {
+            at,
+            normal: normal.normalize(),
+            axis: DVec3::new(0.1, 0.9, 0.3),
+            fixed,
+        })
+    };
+    places.iter().flat_map(both).collect()
 }
 
 impl Flat {
@@ -206,8 +248,8 @@ fn described(material: &Material) -> String {
             index,
         } => {
             let (n, k) = match index {
-                malus_optics::Index::Mirror => ("inf".to_owned(), 0.0),
-                malus_optics::Index::Relative { n, k, .. } => (format!("{n:?}"), k),
+                Index::Mirror => ("inf".to_owned(), 0.0),
+                Index::Relative { n, k, .. } => (format!("{n:?}"), k),
             };
             format!("rho = {rho:?}\na = {fraction:?}\nn = {n}\nk = {k:?}")
         }

@@ -1,25 +1,16 @@
 //! Sheets that light passes, against closed forms.
 
 use crate::experiment::{assert_estimate, assert_exact, measured, s0};
-use crate::images::{Eye, Flat, Source, assert_images, assert_stokes, by_images, slab, written};
-use glam::DVec3;
+use crate::images::{
+    Eye, Flat, Source, assert_images, assert_stokes, by_images, eyes, mirror, parallel, point,
+    slab, written,
+};
+use glam::{DVec3, dvec3 as v};
 use malus_estimator::Reading;
-use malus_optics::{Index, Material};
-
-const fn v(x: f64, y: f64, z: f64) -> DVec3 {
-    DVec3::new(x, y, z)
-}
+use malus_optics::Material;
 
 const fn pane(n: f64, tau: f64) -> Material {
     Material::Pane { n, tau }
-}
-
-fn mirror(fraction: f64, n: f64, k: f64) -> Material {
-    Material::Mixture {
-        rho: 0.0,
-        fraction,
-        index: Index::new(n, k),
-    }
 }
 
 /// A horizontal sheet without end, or so.
@@ -30,36 +21,6 @@ fn sheet(z: f64, material: Material) -> Flat {
         v: v(0.0, 100.0, 0.0),
         material,
     }
-}
-
-fn point(at: DVec3) -> Source {
-    Source {
-        at,
-        finite: true,
-        strength: 3.0,
-        state: [1.0, 0.4, -0.5, 0.6],
-        axis: v(0.6, 0.8, 0.1),
-    }
-}
-
-fn parallel(from: DVec3) -> Source {
-    Source {
-        at: from.normalize(),
-        finite: false,
-        ..point(from)
-    }
-}
-
-fn eyes(places: &[(DVec3, DVec3)]) -> Vec<Eye> {
-    let both = |&(at, normal): &(DVec3, DVec3)| {
-        [false, true].map(|fixed| Eye {
-            at,
-            normal: normal.normalize(),
-            axis: v(0.1, 0.9, 0.3),
-            fixed,
-        })
-    };
-    places.iter().flat_map(both).collect()
 }
 
 /// Case 5.5 of CIE 171 through the whole program: parallel light across a plate, T about its plane of incidence.

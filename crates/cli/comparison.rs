@@ -1,7 +1,6 @@
 //! Which variants differ, and in which order they stand: paired differences, corrected for their number.
 
-use crate::student::{half_width, two_sided};
-use malus_estimator::Estimate;
+use malus_estimator::{Estimate, half_width, two_sided};
 use rayon::prelude::*;
 
 /// Chance that any of a family of comparisons finds a difference where there is none.

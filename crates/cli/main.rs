@@ -40,7 +40,6 @@ mod sensitivity;
 mod shards;
 mod slurm;
 mod stop;
-mod student;
 mod submit;
 mod summary;
 mod svg;

@@ -3,10 +3,9 @@
 use crate::digest::{Difference, Digest};
 use crate::label;
 use crate::number::{measured, metres, significant, with_error};
-use crate::student::half_width_95;
 use crate::summary::Circumstances;
 use crate::table::{Table, left, right};
-use malus_estimator::{Group, Reading, Results, Stop};
+use malus_estimator::{Group, Reading, Results, Stop, half_width_95};
 use malus_optics::Representation;
 use malus_scene::{Scene, Sensor};
 use std::path::Path;

@@ -9,10 +9,9 @@ use crate::findings::Finding;
 use crate::outcome::{Outcome, measured};
 use crate::output::Directory;
 use crate::report::print;
-use crate::student::half_width_95;
 use crate::{rows, trade};
 use anyhow::{Result, anyhow, ensure};
-use malus_estimator::{Group, Together};
+use malus_estimator::{Group, Together, half_width_95};
 use malus_scene::{Base, Scene, Study};
 
 /// Name of the scene as it stands among its variants.

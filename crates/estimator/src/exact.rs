@@ -46,8 +46,8 @@ struct Ray<'a> {
     steps: Vec<Step>,
 }
 
-/// What each variant has at each sensor from all point, spot and distant sources that it sees, where walks look into mirrors
-/// by all listed images too, and from the surfaces in `sight`.
+/// What each variant has at each sensor from the surfaces in `sight` and from all point, spot and distant sources that it
+/// sees: straight, and where walks look into mirrors by all listed images.
 pub(crate) fn known<const N: usize>(
     passes: &Passes,
     channels: &Channels,
@@ -58,10 +58,10 @@ pub(crate) fn known<const N: usize>(
     let of_sensor = |(sensor, receiver): (usize, &Receiver)| {
         let mut values = vec![0.0; variants * channels.count];
         let mirrored = passes.techniques.mirrored;
-        let rays = rays(&passes.main, receiver, mirrored);
+        let rays = to_sources(&passes.main, receiver, mirrored);
         let apart = passes
             .apart
-            .map(|medium| (medium, self::rays(&medium, receiver, mirrored)));
+            .map(|medium| (medium, to_sources(&medium, receiver, mirrored)));
         for (variant, values) in values.chunks_mut(channels.count).enumerate() {
             let variation = &passes.main.variations[variant];
             let straight = sight.map_or(0.0, |s| s.irradiance(sensor, &variation.materials));
@@ -92,6 +92,7 @@ pub(crate) fn known<const N: usize>(
     (0..variants).map(of_variant).collect()
 }
 
+/// What comes by some rays, in the sensor's basis.
 fn sum<const N: usize>(receiver: &Receiver, rays: &[Ray], variation: &Variation) -> [f64; N] {
     let mut sum = [0.0; N];
     for ray in rays {
@@ -106,7 +107,7 @@ fn sum<const N: usize>(receiver: &Receiver, rays: &[Ray], variation: &Variation)
 }
 
 /// The ways from a sensor straight to sources, and if it looks into mirrors to their images.
-fn rays<'a>(medium: &Medium<'a>, receiver: &Receiver, mirrored: bool) -> Vec<Ray<'a>> {
+fn to_sources<'a>(medium: &Medium<'a>, receiver: &Receiver, mirrored: bool) -> Vec<Ray<'a>> {
     let mut rays = Vec::new();
     if receiver.enclosed || !receiver.is_irradiance() {
         return rays;

@@ -15,6 +15,7 @@ use crate::path::Path;
 use crate::random::Stream;
 use crate::results::{Absorbed, Energy, Unseen};
 use crate::statistics::{Estimate, Means, MergeError, Replica, Tally};
+use crate::student::half_width_95;
 use crate::trace::{Techniques, Walk};
 use malus_geometry::Surfaces;
 use malus_scene::{Estimator, Material, Scene};
@@ -117,11 +118,13 @@ impl<'t> Ledger<'t> {
             standard_error,
         } = self.tally.estimate(|means| means.at(MISSING) / met);
         // What none of n walks has met is rarer than 3/n in 95 of 100 cases.
-        let walks = self.tally.points() * self.tally.replicas().count() as u64;
+        let replicas = self.tally.replicas().count() as u32;
+        let walks = self.tally.points() * u64::from(replicas);
+        let half_width = half_width_95(replicas.saturating_sub(1).max(1)) * standard_error;
         Unseen {
             share: mean,
             standard_error,
-            at_most: (mean + 2.0 * standard_error).max(3.0 / walks as f64),
+            at_most: (mean + half_width).max(3.0 / walks as f64),
         }
     }
 

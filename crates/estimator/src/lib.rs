@@ -36,6 +36,7 @@ mod sight;
 mod spread;
 mod state;
 mod statistics;
+mod student;
 mod trace;
 mod variation;
 
@@ -49,4 +50,5 @@ pub use results::{
 pub use run::{Together, resume, resume_together, run, run_together};
 pub use state::{NoShard, Shard, State, StateError};
 pub use statistics::{Estimate, Means, MergeError, REPLICAS, Replica, Tally};
+pub use student::{half_width, half_width_95, two_sided};
 pub use variation::Cohort;

@@ -192,10 +192,11 @@ impl Mirrors {
     /// Draws ways by mirrors that may lead the viewer to the target; `found` is given each, with one over the probability
     /// of the draw.
     ///
-    /// Every way that is not known has a chance; the mean of what it brings, times that inverse, is the sum over all. A short chain is drawn
-    /// as such, by its beam. Of longer ones many orders of the same mirrors make the same image, each for a sliver of
-    /// directions, so there the image is drawn: its probability is that of a cone of directions about it to lead to it by
-    /// any order, and one over that is estimated without bias by how many tries that takes.
+    /// Every way has a chance, but for those to image sources that a sensor knows; the mean of what it brings, times that
+    /// inverse, is the sum over all. A short chain is drawn as such, by its beam. Of longer ones many orders of the same
+    /// mirrors make the same image, each for a sliver of directions, so there the image is drawn: its probability is that
+    /// of a cone of directions about it to lead to it by any order, and one over that is estimated without bias by how
+    /// many tries that takes.
     pub(crate) fn draw(
         &self,
         viewer: &Viewer,

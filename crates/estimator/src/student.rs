@@ -5,8 +5,7 @@ const MANY: u32 = 1000;
 
 /// The 97.5 % quantile of Student's t with `dof` degrees of freedom ≥ 1: half the width of a two-sided 95 % interval,
 /// in standard errors.
-///
-/// For printing only: results do not depend on it.
+#[must_use]
 pub fn half_width_95(dof: u32) -> f64 {
     if dof > MANY {
         return expanded(f64::from(dof));
@@ -15,6 +14,7 @@ pub fn half_width_95(dof: u32) -> f64 {
 }
 
 /// Half the width of a two-sided interval of that confidence, in standard errors.
+#[must_use]
 pub fn half_width(confidence: f64, dof: u32) -> f64 {
     // In the angle θ with t = √dof · tan θ the distribution is a finite sum, monotone on (0, π/2).
     let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
@@ -26,18 +26,19 @@ pub fn half_width(confidence: f64, dof: u32) -> f64 {
             high = middle;
         }
     }
-    f64::from(dof.max(1)).sqrt() * (0.5 * (low + high)).tan()
+    f64::from(dof.max(1)).sqrt() * libm::tan(0.5 * (low + high))
 }
 
 /// Probability with which chance alone makes |t| as large or larger; below 10⁻¹⁵ it is not told from 0.
+#[must_use]
 pub fn two_sided(t: f64, dof: u32) -> f64 {
-    let angle = (t.abs() / f64::from(dof.max(1)).sqrt()).atan();
+    let angle = libm::atan(t.abs() / f64::from(dof.max(1)).sqrt());
     (1.0 - inside(angle, dof)).max(0.0)
 }
 
 /// Probability of |t| < √dof · tan θ (Abramowitz & Stegun, 26.7.3 and 26.7.4).
 fn inside(angle: f64, dof: u32) -> f64 {
-    let (sine, cosine) = angle.sin_cos();
+    let (sine, cosine) = libm::sincos(angle);
     let odd = dof % 2 == 1;
     // odd:  (2/π) [θ + sin θ (cos θ + 2/3 cos³ θ + … )],  even: sin θ (1 + 1/2 cos² θ + 1·3/(2·4) cos⁴ θ + …)
     let mut term = if odd { cosine } else { 1.0 };
