@@ -112,3 +112,86 @@ fn grazing_light_between_glossy_walls_is_finite() {
     let (value, error) = s0(&readings[1]);
     assert_estimate("beside the wall", (value, error.hypot(1.0)), 125.0, 0.05);
 }
+
+/// A point source in the plane of a ceiling, or by single precision just above it, lights what is below, straight and by a
+/// mirror on the floor, whichever way the ceiling's normal points: E = I h/r³ of each.
+#[test]
+fn a_source_flush_with_the_ceiling_lights_the_room() {
+    for height in [1.0, 2.7, 0.9, 3.1f64] {
+        for above in [0.0, 1e-7 * height, -1e-7 * height] {
+            for ceiling in [
+                sheet(
+                    "black",
+                    [-9.0, -9.0, height],
+                    [18.0, 0.0, 0.0],
+                    [0.0, 18.0, 0.0],
+                ),
+                sheet(
+                    "black",
+                    [-9.0, -9.0, height],
+                    [0.0, 18.0, 0.0],
+                    [18.0, 0.0, 0.0],
+                ),
+            ] {
+                let readings = measured(&format!(
+                    "{ceiling}{}{}{}
+                    [material.black]
+                    rho = 0
+                    [material.mirror]
+                    rho = 0
+                    a = 1
+                    n = inf
+                    [[source]]
+                    kind = 'point'
+                    position = [0.2, 0.1, {:?}]
+                    intensity = 3
+                    [run]
+                    samples = 64",
+                    sheet(
+                        "mirror",
+                        [-9.0, -9.0, 0.0],
+                        [18.0, 0.0, 0.0],
+                        [0.0, 18.0, 0.0]
+                    ),
+                    sensors(&[[0.6, 0.4, 0.25]], [0.0, 0.0, 1.0]),
+                    sensors(&[[0.6, 0.4, 0.25]], [0.0, 0.0, -1.0])
+                        .replace("name = '", "name = 'down-"),
+                    height + above,
+                ));
+                for (reading, rise) in readings.iter().zip([height - 0.25, height + 0.25]) {
+                    let square = 0.25 + rise * rise;
+                    let exact = 3.0 * rise / (square * square.sqrt());
+                    let what = format!("{height} {above:e} {rise}");
+                    assert_exact(&what, reading.stokes[0], exact, 1e-5);
+                }
+            }
+        }
+    }
+}
+
+/// A spot in the plane of a ceiling lights the room as one does a micrometre below it, by the same walks.
+#[test]
+fn a_spot_flush_with_the_ceiling_loses_nothing() {
+    for height in [1.3, 2.7, 1.2, 3.4f64] {
+        let below = |distance: f64| {
+            let readings = measured(&format!(
+                "{}{}
+                [material.wall]
+                rho = 0.6
+                [[source]]
+                kind = 'spot'
+                position = [0.8, 0.9, {:?}]
+                direction = [0, 0, -1]
+                cone_deg = 120
+                intensity = 1
+                [run]
+                samples = 4096",
+                cube("wall", [0.1, 0.2, 0.3], [1.7, 1.9, height]),
+                sensors(&[[0.3, 0.5, 0.5]], [0.0, 0.0, -1.0]),
+                height - distance,
+            ));
+            readings[0].stokes[0]
+        };
+        assert_exact(&format!("{height}"), below(0.0), below(1e-6), 1e-4);
+    }
+}

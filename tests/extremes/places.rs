@@ -1,7 +1,7 @@
 //! Sensors where surfaces meet. In a furnace E = M/(1 − ρ) at every point, whichever way it faces.
 
 use super::{cube, sensors, sheet};
-use crate::experiment::{assert_estimate, measured, s0};
+use crate::experiment::{assert_estimate, assert_exact, measured, s0};
 
 fn furnace(points: &[[f64; 3]], normal: [f64; 3], extra: &str, run: &str) -> String {
     format!(
@@ -103,4 +103,87 @@ fn a_sensor_below_the_corner_of_a_lamp_has_a_quarter_of_four() {
     assert_estimate("one", lamps(&[[0.0, 0.0]]), exact, 3e-3);
     let four = [[0.0, 0.0], [-1.0, 0.0], [0.0, -1.0], [-1.0, -1.0]];
     assert_estimate("four", lamps(&four), 4.0 * exact, 3e-3);
+}
+
+/// In the corner of two mirrors the source and its three images stand in one direction up to signs: E = 4 I h/r³, also where
+/// the source stands in the plane between the mirrors, so that neither is met first by the geometry.
+#[test]
+fn a_sensor_in_the_corner_of_two_mirrors_sees_all_four_images() {
+    for [x, y] in [[0.0, 0.0], [1.0, 1.0], [-0.7, 1.3]] {
+        for [sx, sy] in [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0f64]] {
+            for (along, across) in [(0.5, 0.5), (0.3, 0.8)] {
+                let (up, u, v) = (
+                    [0.0, 0.0, 40.0],
+                    [sx * 20.0, 0.0, 0.0],
+                    [0.0, sy * 20.0, 0.0],
+                );
+                // With their normals towards the source: on that side of a wall along its normal a sensor lies.
+                let wall = |turned: bool, one, other| match turned {
+                    true => sheet("glass", [x, y, -20.0], other, one),
+                    false => sheet("glass", [x, y, -20.0], one, other),
+                };
+                let walls = [wall(sx * sy > 0.0, u, up), wall(sx * sy < 0.0, v, up)];
+                let readings = measured(&format!(
+                    "{}{}
+                    [material.glass]
+                    rho = 0
+                    a = 1
+                    n = inf
+                    [[source]]
+                    kind = 'point'
+                    position = [{}, {}, 0.6]
+                    intensity = 2
+                    [run]
+                    samples = 64",
+                    walls.concat(),
+                    sensors(&[[x, y, 0.1]], [0.0, 0.0, 1.0]),
+                    x + sx * along,
+                    y + sy * across,
+                ));
+                let square = along * along + across * across + 0.25;
+                let exact = 4.0 * 2.0 * 0.5 / (square * square.sqrt());
+                let what = format!("({x}, {y}), ({sx}, {sy}), ({along}, {across})");
+                assert_exact(&what, readings[0].stokes[0], exact, 1e-8);
+            }
+        }
+    }
+}
+
+/// A source in the middle of a cube whose side walls are ideal mirrors, and sensors on its black floor, in corners, too: the
+/// images are a square lattice, E = Σ I h/r³. What lies beyond the square |x|, |y| < n brings 4 √2 I h/n.
+#[test]
+fn sensors_in_the_corners_of_a_mirrored_box_see_a_whole_lattice() {
+    let points = [[0.5, 0.5], [0.0, 0.5], [0.0, 0.0], [1.0, 1.0], [1.0, 0.0]];
+    let readings = measured(&format!(
+        "{}{}{}
+        [material.glass]
+        rho = 0
+        a = 1
+        n = inf
+        [material.black]
+        rho = 0
+        [[source]]
+        kind = 'point'
+        position = [0.5, 0.5, 0.5]
+        intensity = 1
+        [run]
+        samples = 8192",
+        cube("glass", [0.0; 3], [1.0; 3]),
+        [0.0, 1.0]
+            .map(|z| sheet("black", [0.0, 0.0, z], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]))
+            .concat(),
+        sensors(&points.map(|[x, y]| [x, y, 0.0]), [0.0, 0.0, 1.0]),
+    ));
+    const SIDE: i32 = 300;
+    for (reading, [x, y]) in readings.iter().zip(points) {
+        let mut exact = 4.0 * 2f64.sqrt() * 0.5 / f64::from(SIDE);
+        for i in -SIDE..SIDE {
+            for j in -SIDE..SIDE {
+                let (dx, dy) = (f64::from(i) + 0.5 - x, f64::from(j) + 0.5 - y);
+                let square = dx * dx + dy * dy + 0.25;
+                exact += 0.5 / (square * square.sqrt());
+            }
+        }
+        assert_estimate(&format!("({x}, {y})"), s0(reading), exact, 0.01);
+    }
 }

@@ -3,7 +3,7 @@
 use crate::cover::{Cover, Odds};
 use crate::emitters::{Emitters, Site};
 use crate::glints::Glints;
-use crate::mirrors::{Drawn, Mirrors, Target, Viewer};
+use crate::mirrors::{ASIDE, Drawn, Mirrors, Target, Viewer};
 use crate::random::Fresh;
 use crate::spread::Spread;
 use crate::variation::Variation;
@@ -415,10 +415,6 @@ impl<'a> Medium<'a> {
         self.mirrors.probability(viewer, &target, chain)
     }
 }
-
-/// How far a point source is moved aside before it is looked for in mirrors, in terms of the scene's radius. In the middle
-/// of a room it would be seen from points of a regular grid just by edges, where neither wall is sure to be met.
-const ASIDE: DVec3 = DVec3::new(0.71e-9, 0.53e-9, 0.43e-9);
 
 /// A site as what a chain of mirrors leads to.
 pub(crate) fn target<'t>(

@@ -6,8 +6,8 @@ use crate::error::Error;
 use crate::file::SceneFile;
 use crate::import::Import;
 use crate::need::Need;
-use crate::scene::{lit, sources, without_loss};
-use crate::{Camera, Material, Scene, Source, panes};
+use crate::scene::{lit, observers, sources, without_loss};
+use crate::{Camera, Material, Scene, Source, flush, panes};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -57,8 +57,10 @@ impl Foundation {
         file.library.check_used(&names, meshes, &mut Vec::new())?;
         let (materials, _) = assembly.materials(imports, &file.library, surfaces)?;
         panes::check(surfaces, &materials, &assembly.objects, &file.library)?;
-        let sources = sources(file.sources, imports);
+        let mut sources = sources(file.sources, imports);
         lit(path, surfaces, &materials, &sources)?;
+        let observers = observers(&base.sensors, &base.cameras);
+        flush::clear(&mut sources, surfaces, &observers);
         let mut sensors = base.sensors.clone();
         if !same_places(base, &materials, &sources) {
             for point in sensors.iter_mut().flat_map(|sensor| &mut sensor.points) {

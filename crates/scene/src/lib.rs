@@ -49,6 +49,7 @@ mod enclosed;
 mod error;
 mod file;
 mod fingerprint;
+mod flush;
 mod foundation;
 mod import;
 mod leaks;

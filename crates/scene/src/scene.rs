@@ -10,7 +10,8 @@ use crate::need::{Need, word};
 use crate::overrides::Override;
 use crate::placing::{measured, place};
 use crate::{
-    Camera, Material, Origin, Sensor, Settings, Source, Unit, defects, enclosed, leaks, panes,
+    Camera, Material, Origin, Sensor, Settings, Source, Unit, defects, enclosed, flush, leaks,
+    panes,
 };
 use glam::DVec3;
 use malus_geometry::Surfaces;
@@ -90,7 +91,7 @@ impl Scene {
         warnings.extend(no_mirrors(&materials));
         warnings.extend(white(&materials));
 
-        let sources = sources(file.sources, &imports);
+        let mut sources = sources(file.sources, &imports);
         lit(path, &surfaces, &materials, &sources)?;
         warnings.extend(mixed_units(&imports, &materials));
 
@@ -101,6 +102,7 @@ impl Scene {
             let path = path.display().to_string();
             return Err(Error::NoSensor { path });
         }
+        flush::clear(&mut sources, &surfaces, &observers(&sensors, &cameras));
         let darkness = enclosed::Darkness::of(&surfaces, &materials, &sources);
         darkness.mark(&mut sensors);
         warnings.extend(darkness.warnings(&cameras, &sensors, &assembly.objects));
@@ -202,7 +204,7 @@ fn each<I, T>(items: &[I], read: impl Fn(&I) -> Result<T, Error>) -> Result<Vec<
 }
 
 /// Where light is measured or seen, in m.
-fn observers(sensors: &[Sensor], cameras: &[Camera]) -> Vec<DVec3> {
+pub(crate) fn observers(sensors: &[Sensor], cameras: &[Camera]) -> Vec<DVec3> {
     let points = sensors.iter().flat_map(|sensor| &sensor.points);
     let eyes = cameras.iter().map(|camera| camera.position);
     points.map(|point| point.position).chain(eyes).collect()

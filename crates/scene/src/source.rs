@@ -24,7 +24,7 @@ pub struct Source {
 pub enum SourceKind {
     /// A point.
     Point {
-        /// Position in metres.
+        /// Position in metres: of a loaded scene free of the surfaces that it was given in.
         position: DVec3,
         /// Intensity along the direction in which it is greatest, in unit/sr, ≥ 0.
         intensity: f64,

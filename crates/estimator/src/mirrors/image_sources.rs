@@ -38,8 +38,8 @@ enum Mirrored {
 }
 
 impl ImageSources {
-    /// Those in chains as long as their number and what the mirrors leave of the light allow.
-    pub fn new(mirrors: &Mirrors, sources: &[Source]) -> Self {
+    /// Those in chains as long as their number and what the mirrors leave of the light allow, of points moved `aside`.
+    pub fn new(mirrors: &Mirrors, sources: &[Source], aside: DVec3) -> Self {
         let facets = 0..mirrors.facets.list().len() as u32;
         let strongest = mirrors.covers.iter().map(reflectance).fold(0.0, f64::max);
         let mut images = Self::default();
@@ -58,7 +58,7 @@ impl ImageSources {
             for (image, light) in &behind_fewer {
                 let kind = &sources[image.source].kind;
                 for facet in facets.clone() {
-                    if let Some(light) = mirrors.send_on(kind, light.as_ref(), facet) {
+                    if let Some(light) = mirrors.send_on(kind, aside, light.as_ref(), facet) {
                         let mut image = image.clone();
                         image.chain.insert(0, facet);
                         mirrors_in_all += image.chain.len();
@@ -83,16 +83,23 @@ impl ImageSources {
 
 impl Mirrors {
     /// What one more mirror sends on of a source's light; `None` where nothing gets there.
-    fn send_on(&self, kind: &SourceKind, light: Option<&Mirrored>, facet: u32) -> Option<Mirrored> {
+    fn send_on(
+        &self,
+        kind: &SourceKind,
+        aside: DVec3,
+        light: Option<&Mirrored>,
+        facet: u32,
+    ) -> Option<Mirrored> {
         let plane = self.facet(facet);
         match (light, kind) {
             (None, &SourceKind::Point { position, .. }) => {
+                let point = position + aside;
                 let toward_plane = Viewer {
-                    point: position,
-                    normal: plane.normal * -plane.above(position).signum(),
+                    point,
+                    normal: plane.normal * -plane.above(point).signum(),
                     sensor: false,
                 };
-                let view = View::new(&toward_plane).behind(self, facet)?;
+                let view = View::new(&toward_plane).in_mirror(self, facet)?;
                 Some(Mirrored::Beam(view))
             }
             (None, &SourceKind::Distant { direction, .. }) => {
@@ -100,7 +107,7 @@ impl Mirrors {
             }
             (Some(Mirrored::Beam(view)), _) => {
                 let again = view.facets.last() == Some(&facet);
-                let view = (!again).then(|| view.behind(self, facet))??;
+                let view = (!again).then(|| view.in_mirror(self, facet))??;
                 Some(Mirrored::Beam(view))
             }
             (Some(&Mirrored::Parallel(direction, last)), _) => {

@@ -25,8 +25,14 @@ impl View {
         }
     }
 
-    /// What is seen in one more mirror.
+    /// What is seen in one more mirror, if that is wide enough to be followed.
     pub fn behind(&self, mirrors: &Mirrors, facet: u32) -> Option<Self> {
+        self.in_mirror(mirrors, facet)
+            .filter(|view| view.share >= NARROWEST)
+    }
+
+    /// What is seen in one more mirror, however little.
+    pub fn in_mirror(&self, mirrors: &Mirrors, facet: u32) -> Option<Self> {
         let plane = &mirrors.facets.list()[facet as usize];
         let window = self
             .facets
@@ -34,9 +40,6 @@ impl View {
             .map(|&f| &mirrors.facets.list()[f as usize]);
         let beam = self.beam.through(plane, window)?;
         let share = beam.share();
-        if share < NARROWEST {
-            return None;
-        }
         let mut facets = self.facets.clone();
         facets.push(facet);
         Some(Self {
