@@ -105,8 +105,9 @@ fn a_sensor_below_the_corner_of_a_lamp_has_a_quarter_of_four() {
     assert_estimate("four", lamps(&four), 4.0 * exact, 3e-3);
 }
 
-/// In the corner of two mirrors the source and its three images stand in one direction up to signs: E = 4 I h/r³, also where
-/// the source stands in the plane between the mirrors, so that neither is met first by the geometry.
+/// In the corner of two mirrors a source and its three images stand in one direction up to signs: E = 4 I h/r³ of a point and
+/// 4 E₀ h/r of parallel light, also where the source stands in the plane between the mirrors, so that neither is met first by
+/// the geometry.
 #[test]
 fn a_sensor_in_the_corner_of_two_mirrors_sees_all_four_images() {
     for [x, y] in [[0.0, 0.0], [1.0, 1.0], [-0.7, 1.3]] {
@@ -133,15 +134,21 @@ fn a_sensor_in_the_corner_of_two_mirrors_sees_all_four_images() {
                     kind = 'point'
                     position = [{}, {}, 0.6]
                     intensity = 2
+                    [[source]]
+                    kind = 'distant'
+                    direction = [{}, {}, -0.5]
+                    irradiance = 0.7
                     [run]
                     samples = 64",
                     walls.concat(),
                     sensors(&[[x, y, 0.1]], [0.0, 0.0, 1.0]),
                     x + sx * along,
                     y + sy * across,
+                    -sx * along,
+                    -sy * across,
                 ));
                 let square = along * along + across * across + 0.25;
-                let exact = 4.0 * 2.0 * 0.5 / (square * square.sqrt());
+                let exact = 4.0 * (2.0 * 0.5 / square + 0.7 * 0.5) / square.sqrt();
                 let what = format!("({x}, {y}), ({sx}, {sy}), ({along}, {across})");
                 assert_exact(&what, readings[0].stokes[0], exact, 1e-8);
             }

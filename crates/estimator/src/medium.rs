@@ -422,9 +422,10 @@ pub(crate) fn target<'t>(
     radius: f64,
     strength: &'t dyn Fn(DVec3, f64) -> f64,
 ) -> Target<'t> {
-    let aside = match site.area_density() {
-        Some(_) => DVec3::ZERO,
-        None => ASIDE * radius,
+    let aside = match (site.area_density(), site.from) {
+        (Some(_), _) => DVec3::ZERO,
+        (None, Some(_)) => ASIDE * radius,
+        (None, None) => ASIDE,
     };
     Target {
         at: site.from.map_or(-site.direction(), |from| from + aside),

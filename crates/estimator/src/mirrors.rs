@@ -43,8 +43,9 @@ const LONGEST_CHAIN: u32 = 1_000_000;
 /// Distance within which two images are one, as a share of the scene's radius.
 const APART: f64 = 1e-6;
 
-/// How far a point source is moved aside before it is looked for in mirrors, in terms of the scene's radius. In the middle
-/// of a room it would be seen from points of a regular grid just by edges, where neither wall is sure to be met.
+/// How far a point source is moved aside before it is looked for in mirrors, in terms of the scene's radius, and parallel
+/// light in terms of its direction's length. In the middle of a room it would be seen from points of a regular grid just
+/// by edges, where neither wall is sure to be met.
 pub(crate) const ASIDE: DVec3 = DVec3::new(0.71e-9, 0.53e-9, 0.43e-9);
 
 /// Probability with which a ray is followed behind a mirror, relative to what it reflects at that angle.
