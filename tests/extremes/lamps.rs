@@ -1,7 +1,7 @@
 //! Lamps without size, strong and weak ones, and light that grazes.
 
 use super::{cube, sensors, sheet, unit_room};
-use crate::experiment::{assert_estimate, assert_exact, measured, s0};
+use crate::experiment::{assert_estimate, assert_exact, evaluate, measured, readings, s0, scene};
 use std::f64::consts::PI;
 
 /// E = M A/(π r²) below a lamp of 10⁻⁶ m, hung free or flush with the ceiling.
@@ -193,5 +193,105 @@ fn a_spot_flush_with_the_ceiling_loses_nothing() {
             readings[0].stokes[0]
         };
         assert_exact(&format!("{height}"), below(0.0), below(1e-6), 1e-4);
+    }
+}
+
+/// A source in the edge between a floor and a roof, down to 10°, lights what is between them: E = I cos θ/r².
+#[test]
+fn a_source_in_the_eaves_lights_the_attic() {
+    for degrees in [80.0, 60.0, 45.0, 20.0, 10.0f64] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let (half_sin, half_cos) = (0.5 * degrees).to_radians().sin_cos();
+        let reading = measured(&format!(
+            "{}{}{}
+            [material.black]
+            rho = 0
+            [[source]]
+            kind = 'point'
+            position = [0.3, 0.2, 0.1]
+            intensity = 2
+            [run]
+            samples = 64",
+            sheet("black", [0.3, -4.0, 0.1], [5.0, 0.0, 0.0], [0.0, 8.0, 0.0]),
+            sheet(
+                "black",
+                [0.3, -4.0, 0.1],
+                [5.0 * cos, 0.0, 5.0 * sin],
+                [0.0, 8.0, 0.0]
+            ),
+            // Halfway between the two, facing the edge.
+            sensors(
+                &[[0.3 + 2.0 * half_cos, 0.2, 0.1 + 2.0 * half_sin]],
+                [-half_cos, 0.0, -half_sin]
+            ),
+        ))[0];
+        // It is moved into the edge by 1e-7 m over the sine of half the angle.
+        assert_exact(
+            &format!("{degrees}°"),
+            reading.stokes[0],
+            0.5,
+            5e-7 / half_sin,
+        );
+    }
+}
+
+/// A lamp on the floor of a box whose normals point outwards, and sensors on that floor: the room is lit, not what is below.
+#[test]
+fn a_source_flush_with_the_floor_lights_what_faces_up() {
+    let lit = |height: f64, inward: bool| {
+        measured(&format!(
+            "{}{}
+            [material.wall]
+            rho = 0.5
+            [[source]]
+            kind = 'point'
+            position = [2, 1, {height:?}]
+            intensity = 1
+            [run]
+            samples = 4096",
+            cube("wall", [0.0; 3], [4.0, 4.0, 3.0])
+                .replace("inward = true", &format!("inward = {inward}")),
+            sensors(
+                &[[1.0, 1.0, 0.0], [3.0, 2.0, 0.0], [2.0, 3.5, 0.0]],
+                [0.0, 0.0, 1.0]
+            ),
+        ))
+    };
+    for inward in [true, false] {
+        for (flush, above) in lit(0.0, inward).iter().zip(lit(1e-4, inward)) {
+            let error = flush.standard_error[0].hypot(above.standard_error[0]);
+            let z = (flush.stokes[0] - above.stokes[0]) / error;
+            assert!(
+                z.abs() < 4.5,
+                "inward = {inward}: {flush:?} {above:?}: z = {z:.2}"
+            );
+            assert!(error < 0.1 * above.stokes[0], "{error}");
+        }
+    }
+}
+
+/// Irradiance has no bound in a point source itself: it is left out, also where both lie in the floor.
+#[test]
+fn a_sensor_in_a_source_is_told_and_left_out() {
+    for place in [[0.5, 0.5, 0.5], [0.5, 0.5, 0.0], [0.0, 0.0, 0.0]] {
+        let results = evaluate(&scene(&format!(
+            "{}{}
+            [material.black]
+            rho = 0
+            [[source]]
+            kind = 'point'
+            position = {place:?}
+            intensity = 1
+            [run]
+            samples = 64",
+            cube("black", [0.0; 3], [1.0; 3]),
+            sensors(&[place], [0.0, 0.0, 1.0]),
+        )));
+        assert!(readings(&results)[0].stokes[0].abs() <= 0.0, "{place:?}");
+        let told = results
+            .warnings
+            .iter()
+            .any(|w| w.contains("1 sensor points lie in a point source"));
+        assert!(told, "{:?}", results.warnings);
     }
 }

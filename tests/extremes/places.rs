@@ -110,20 +110,23 @@ fn a_sensor_below_the_corner_of_a_lamp_has_a_quarter_of_four() {
 /// the geometry.
 #[test]
 fn a_sensor_in_the_corner_of_two_mirrors_sees_all_four_images() {
-    for [x, y] in [[0.0, 0.0], [1.0, 1.0], [-0.7, 1.3]] {
-        for [sx, sy] in [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0f64]] {
+    let quarter = std::f64::consts::FRAC_PI_4;
+    for turn in [0, 1, 2, 3, 5, 7]
+        .map(|n| f64::from(n) * quarter)
+        .into_iter()
+        .chain([0.3])
+    {
+        let (sin, cos) = turn.sin_cos();
+        let [u, v] = [[cos, sin, 0.0], [-sin, cos, 0.0]];
+        for [x, y] in [[0.0, 0.0], [1.0, 1.0], [-0.7, 1.3]] {
             for (along, across) in [(0.5, 0.5), (0.3, 0.8)] {
-                let (up, u, v) = (
-                    [0.0, 0.0, 40.0],
-                    [sx * 20.0, 0.0, 0.0],
-                    [0.0, sy * 20.0, 0.0],
-                );
+                let up = [0.0, 0.0, 40.0];
                 // With their normals towards the source: on that side of a wall along its normal a sensor lies.
-                let wall = |turned: bool, one, other| match turned {
-                    true => sheet("glass", [x, y, -20.0], other, one),
-                    false => sheet("glass", [x, y, -20.0], one, other),
-                };
-                let walls = [wall(sx * sy > 0.0, u, up), wall(sx * sy < 0.0, v, up)];
+                let walls = [
+                    sheet("glass", [x, y, -20.0], up, u.map(|c| 20.0 * c)),
+                    sheet("glass", [x, y, -20.0], v.map(|c| 20.0 * c), up),
+                ];
+                let toward = [0, 1].map(|axis| along * u[axis] + across * v[axis]);
                 let readings = measured(&format!(
                     "{}{}
                     [material.glass]
@@ -142,14 +145,14 @@ fn a_sensor_in_the_corner_of_two_mirrors_sees_all_four_images() {
                     samples = 64",
                     walls.concat(),
                     sensors(&[[x, y, 0.1]], [0.0, 0.0, 1.0]),
-                    x + sx * along,
-                    y + sy * across,
-                    -sx * along,
-                    -sy * across,
+                    x + toward[0],
+                    y + toward[1],
+                    -toward[0],
+                    -toward[1],
                 ));
                 let square = along * along + across * across + 0.25;
                 let exact = 4.0 * (2.0 * 0.5 / square + 0.7 * 0.5) / square.sqrt();
-                let what = format!("({x}, {y}), ({sx}, {sy}), ({along}, {across})");
+                let what = format!("turned by {turn}, ({x}, {y}), ({along}, {across})");
                 assert_exact(&what, readings[0].stokes[0], exact, 1e-8);
             }
         }

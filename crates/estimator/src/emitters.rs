@@ -350,14 +350,6 @@ impl<'a> Emitters<'a> {
         self.sources.len()
     }
 
-    /// Where the sources without geometry stand, those at infinity left out.
-    pub(crate) fn source_positions(&self) -> impl Iterator<Item = DVec3> {
-        self.sources.iter().filter_map(|source| match source.kind {
-            SourceKind::Point { position, .. } => Some(position),
-            SourceKind::Distant { .. } => None,
-        })
-    }
-
     /// Start of a walk that carries the flux of the scene divided by its own probability.
     ///
     /// `None` where it would start on a hidden part of a surface.

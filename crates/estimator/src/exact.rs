@@ -124,7 +124,7 @@ fn to_sources<'a>(medium: &Medium<'a>, receiver: &Receiver, mirrored: bool) -> V
         let toward = span / square.sqrt();
         let irradiance = site.irradiance(-toward, square) * toward.dot(receiver.normal);
         // A point at the source itself has no direction to it.
-        if !(irradiance > 0.0 && irradiance.is_finite()) {
+        if !(irradiance > 0.0 && irradiance.is_finite()) || is_at(medium, receiver, site) {
             continue;
         }
         let mut steps = Vec::new();
@@ -164,6 +164,9 @@ fn by_image<'a>(
         normal: receiver.normal,
         sensor: true,
     };
+    if is_at(medium, receiver, site) {
+        return None;
+    }
     let mut steps = Vec::new();
     let way = medium.way_to(&viewer, site, chain, &mut steps)?;
     let leaving = -way.arriving;
@@ -176,15 +179,26 @@ fn by_image<'a>(
     })
 }
 
-/// Says if sensor points lie in point sources, where their irradiance has no bound.
+/// Whether a sensor lies in a point source, where its irradiance has no bound.
+fn is_at(medium: &Medium, receiver: &Receiver, site: &Site) -> bool {
+    let near = |from: DVec3| from.distance(receiver.origin) <= medium.surfaces.tolerance();
+    site.from.is_some_and(near)
+}
+
+/// Says if sensor points lie in point sources.
 pub(crate) fn singular(medium: &Medium, receivers: &[Receiver]) -> Option<String> {
-    let reach = medium.surfaces.tolerance();
+    let sources = 0..medium.emitters.source_count();
+    let sites: Vec<Site> = sources
+        .map(|index| medium.emitters.site_of_source(index, 1.0))
+        .collect();
     let within = |receiver: &&Receiver| {
-        let near = |p: DVec3| p.distance(receiver.origin) <= reach;
-        !receiver.enclosed && medium.emitters.source_positions().any(near)
+        !receiver.enclosed && sites.iter().any(|site| is_at(medium, receiver, site))
     };
     let count = receivers.iter().filter(within).count();
     (count > 0).then(|| {
-        format!("{count} sensor points lie in a point source: its direct light, which has no bound there, is left out")
+        format!(
+            "{count} sensor points lie in a point source: its light, which has no bound there, is left out, but not what \
+             surfaces next to it send back"
+        )
     })
 }

@@ -428,7 +428,7 @@ pub(crate) fn target<'t>(
         (None, None) => ASIDE,
     };
     Target {
-        at: site.from.map_or(-site.direction(), |from| from + aside),
+        at: site.from.unwrap_or(-site.direction()) + aside,
         finite: site.from.is_some(),
         area: site.area_density().is_some(),
         strength,

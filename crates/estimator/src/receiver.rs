@@ -87,33 +87,24 @@ impl Receiver {
 /// Cosine below which a surface stands along a sensor's normal, and has no side that the normal tells.
 const ALONG: f64 = 1e-6;
 
-/// Where several surfaces meet, a sensor keeps farther from some than from others, by the components of their normals times
-/// these: of two mirrors it then meets one before the other in every direction in which an image may stand.
-const UNEVEN: DVec3 = DVec3::new(0.314_159, 0.471_238, 0.839_753);
+/// By how much farther, relative to the first, a sensor keeps from each further one of several planes that meet in it: of two
+/// mirrors it then meets one before the other in every direction in which an image may stand.
+const UNEVEN: f64 = 0.314_159;
 
 /// The point, moved off every surface that it touches: to the side of the sensor's normal, or where a surface stands
 /// along the normal, as the walls do at the edge of a floor, to the side of the surface's own.
 fn free_of_surfaces(surfaces: &Surfaces, position: DVec3, normal: DVec3) -> DVec3 {
     let touched = surfaces.touching(position);
-    let first = touched.first().map(|&triangle| surfaces.normal(triangle));
-    let along_first = |&triangle: &u32| {
-        let across = first.map(|first| first.cross(surfaces.normal(triangle)));
-        across.is_some_and(|across| across.length_squared() < ALONG * ALONG)
+    let planes = surfaces.planes_of(&touched);
+    let side = |(&triangle, plane): (&u32, usize)| {
+        let own = surfaces.normal(triangle);
+        let side = if own.dot(normal) < -ALONG { -own } else { own };
+        (
+            triangle,
+            side,
+            surfaces.offset() * (1.0 + UNEVEN * plane as f64),
+        )
     };
-    let alone = touched.iter().all(along_first);
-    let mut free = position;
-    // In a corner, moving off one surface may come nearer to another: a few rounds settle it.
-    for _ in 0..4 {
-        for &triangle in &touched {
-            let own = surfaces.normal(triangle);
-            let side = if own.dot(normal) < -ALONG { -own } else { own };
-            let height = (free - surfaces.triangle(triangle).vertices[0]).dot(side);
-            let offset = match alone {
-                true => surfaces.offset(),
-                false => surfaces.offset() * (1.0 + own.abs().dot(UNEVEN)),
-            };
-            free += side * (offset - height).max(0.0);
-        }
-    }
-    free
+    let sides: Vec<_> = touched.iter().zip(planes).map(side).collect();
+    surfaces.moved_off(position, &sides)
 }

@@ -250,6 +250,42 @@ impl Surfaces {
         touched
     }
 
+    /// For each triangle the number of its plane among theirs: parallel ones count as one.
+    #[must_use]
+    pub fn planes_of(&self, triangles: &[u32]) -> Vec<usize> {
+        const PARALLEL: f64 = 1e-12;
+        let mut normals: Vec<DVec3> = Vec::new();
+        let place = |&triangle: &u32| {
+            let normal = self.normal(triangle);
+            let same = |other: &DVec3| other.cross(normal).length_squared() < PARALLEL;
+            normals.iter().position(same).unwrap_or_else(|| {
+                normals.push(normal);
+                normals.len() - 1
+            })
+        };
+        triangles.iter().map(place).collect()
+    }
+
+    /// A point moved off the planes of some triangles, to a side of each, given by its unit normal, and at least so far (in m).
+    ///
+    /// Where planes meet, moving off one may come nearer to another: in an edge of 10° it takes some 300 rounds.
+    #[must_use]
+    pub fn moved_off(&self, point: DVec3, sides: &[(u32, DVec3, f64)]) -> DVec3 {
+        const MOST_ROUNDS: usize = 1000;
+        let mut free = point;
+        for _ in 0..MOST_ROUNDS {
+            let before = free;
+            for &(triangle, side, distance) in sides {
+                let height = (free - self.triangle(triangle).vertices[0]).dot(side);
+                free += side * (distance - height).max(0.0);
+            }
+            if free == before {
+                break;
+            }
+        }
+        free
+    }
+
     /// Distance in m by which a ray's end is moved off its surface along the normal: 2⁻⁴⁰ (|centre| + radius).
     ///
     /// Four times the thickness that surfaces have for rays, and some 10³ times the rounding error of a hit: it leaves no

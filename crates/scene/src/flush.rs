@@ -1,6 +1,6 @@
 //! Sources that lie flush in a surface, as a spot does in a ceiling.
 
-use crate::{Distribution, Source, SourceKind};
+use crate::{Camera, Distribution, Quantity, Sensor, Source, SourceKind};
 use glam::DVec3;
 use malus_geometry::Surfaces;
 
@@ -11,11 +11,26 @@ const MOST_PLANES: usize = 3;
 /// farther than images of it are moved aside to be looked for.
 const CLEARANCE: f64 = 0.02;
 
-/// Moves point sources off the surfaces that they lie in: to the side on which most of the observers, points in m, see them,
-/// of equals to that where their light goes, or else to that of the surface's normal.
+/// Moves point sources off the surfaces that they lie in: to the side from which most sensor points and cameras are seen, of
+/// equals to that where their light goes, then to that where the middle of those is, or else to that of the surface's normal.
 ///
 /// In the plane itself rounding would decide whether light comes past the surface.
-pub(crate) fn clear(sources: &mut [Source], surfaces: &Surfaces, observers: &[DVec3]) {
+pub(crate) fn clear(
+    sources: &mut [Source],
+    surfaces: &Surfaces,
+    sensors: &[Sensor],
+    cameras: &[Camera],
+) {
+    let of_irradiance = |sensor: &Sensor| sensor.quantity == Quantity::Irradiance;
+    let points = sensors.iter().flat_map(|sensor| {
+        let normal = |normal| of_irradiance(sensor).then_some(normal);
+        sensor
+            .points
+            .iter()
+            .map(move |point| (point.position, normal(point.normal)))
+    });
+    let eyes = cameras.iter().map(|camera| (camera.position, None));
+    let observers: Vec<Observer> = points.chain(eyes).collect();
     for source in sources {
         if let SourceKind::Point {
             position,
@@ -29,55 +44,62 @@ pub(crate) fn clear(sources: &mut [Source], surfaces: &Surfaces, observers: &[DV
                     Some(direction)
                 }
             };
-            *position = free(surfaces, *position, toward, observers);
+            *position = free(surfaces, *position, toward, &observers);
         }
     }
 }
 
-fn free(surfaces: &Surfaces, position: DVec3, toward: Option<DVec3>, observers: &[DVec3]) -> DVec3 {
+/// A place from which light is measured, and if on one side only the normal there.
+type Observer = (DVec3, Option<DVec3>);
+
+fn free(
+    surfaces: &Surfaces,
+    position: DVec3,
+    toward: Option<DVec3>,
+    observers: &[Observer],
+) -> DVec3 {
     let touched = surfaces.touching(position);
-    if touched.is_empty() {
+    let planes = surfaces.planes_of(&touched);
+    let Some(&last) = planes.iter().max() else {
         return position;
-    }
-    // A normal of each plane, and the triangles in it.
-    let mut planes: Vec<(DVec3, Vec<u32>)> = Vec::new();
-    for triangle in touched {
-        let normal = surfaces.normal(triangle);
-        let same = |plane: &&mut (DVec3, Vec<u32>)| plane.0.cross(normal).length_squared() < 1e-12;
-        match planes.iter_mut().find(same) {
-            Some((_, triangles)) => triangles.push(triangle),
-            None => planes.push((normal, vec![triangle])),
-        }
-    }
-    let sides = 0..1u32 << planes.len().min(MOST_PLANES);
+    };
+    let normals: Vec<DVec3> = (0..=last)
+        .filter_map(|plane| planes.iter().position(|&p| p == plane))
+        .map(|first| surfaces.normal(touched[first]))
+        .collect();
     let distance = CLEARANCE * surfaces.tolerance();
     let on = |sides: u32| {
-        let mut place = position;
-        for (index, (normal, triangles)) in planes.iter().enumerate() {
-            let side = match sides >> index & 1 {
-                0 => *normal,
-                _ => -*normal,
-            };
-            for &triangle in triangles {
-                let height = (place - surfaces.triangle(triangle).vertices[0]).dot(side);
-                place += side * (distance - height).max(0.0);
-            }
-        }
-        place
+        let side = |(&triangle, &plane): (&u32, &usize)| {
+            let turned = plane < MOST_PLANES && sides >> plane & 1 == 1;
+            let sign = if turned { -1.0 } else { 1.0 };
+            (triangle, normals[plane] * sign, distance)
+        };
+        let sides: Vec<_> = touched.iter().zip(&planes).map(side).collect();
+        surfaces.moved_off(position, &sides)
     };
-    let seen = |&place: &DVec3| {
-        // Observers may lie in surfaces, too.
-        let sees = |observer: &&DVec3| surfaces.visible(place, observer.lerp(place, 1e-4));
-        observers.iter().filter(sees).count()
+    let middle = observers.iter().map(|it| it.0).sum::<DVec3>() / observers.len().max(1) as f64;
+    let rank = |place: DVec3| {
+        let sees = |&&(observer, normal): &&Observer| {
+            // Observers may lie in surfaces, too.
+            normal.is_none_or(|normal| normal.dot(place - observer) > 0.0)
+                && surfaces.visible(place, observer.lerp(place, 1e-4))
+        };
+        let along = |direction: DVec3| direction.dot(place - position) > 0.0;
+        let lit = toward.is_some_and(along);
+        (
+            observers.iter().filter(sees).count(),
+            lit,
+            along(middle - position),
+        )
     };
-    let lit = |&place: &DVec3| toward.is_some_and(|t| (place - position).dot(t) > 0.0);
     // Of equals the first: that of the normals.
-    let mut best: Option<(usize, bool, DVec3)> = None;
-    for place in sides.map(on) {
-        let (count, lit) = (seen(&place), lit(&place));
-        if best.is_none_or(|(most, lights, _)| (count, lit) > (most, lights)) {
-            best = Some((count, lit, place));
+    let mut best = on(0);
+    let mut highest = rank(best);
+    for place in (1..1 << (last + 1).min(MOST_PLANES)).map(on) {
+        let rank = rank(place);
+        if rank > highest {
+            (best, highest) = (place, rank);
         }
     }
-    best.map_or(position, |(_, _, place)| place)
+    best
 }

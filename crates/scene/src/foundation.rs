@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::file::SceneFile;
 use crate::import::Import;
 use crate::need::Need;
-use crate::scene::{lit, observers, sources, without_loss};
+use crate::scene::{lit, sources, without_loss};
 use crate::{Camera, Material, Scene, Source, flush, panes};
 use std::path::Path;
 use std::sync::Arc;
@@ -59,8 +59,7 @@ impl Foundation {
         panes::check(surfaces, &materials, &assembly.objects, &file.library)?;
         let mut sources = sources(file.sources, imports);
         lit(path, surfaces, &materials, &sources)?;
-        let observers = observers(&base.sensors, &base.cameras);
-        flush::clear(&mut sources, surfaces, &observers);
+        flush::clear(&mut sources, surfaces, &base.sensors, &base.cameras);
         let mut sensors = base.sensors.clone();
         if !same_places(base, &materials, &sources) {
             for point in sensors.iter_mut().flat_map(|sensor| &mut sensor.points) {

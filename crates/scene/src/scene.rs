@@ -102,7 +102,7 @@ impl Scene {
             let path = path.display().to_string();
             return Err(Error::NoSensor { path });
         }
-        flush::clear(&mut sources, &surfaces, &observers(&sensors, &cameras));
+        flush::clear(&mut sources, &surfaces, &sensors, &cameras);
         let darkness = enclosed::Darkness::of(&surfaces, &materials, &sources);
         darkness.mark(&mut sensors);
         warnings.extend(darkness.warnings(&cameras, &sensors, &assembly.objects));
@@ -204,7 +204,7 @@ fn each<I, T>(items: &[I], read: impl Fn(&I) -> Result<T, Error>) -> Result<Vec<
 }
 
 /// Where light is measured or seen, in m.
-pub(crate) fn observers(sensors: &[Sensor], cameras: &[Camera]) -> Vec<DVec3> {
+fn observers(sensors: &[Sensor], cameras: &[Camera]) -> Vec<DVec3> {
     let points = sensors.iter().flat_map(|sensor| &sensor.points);
     let eyes = cameras.iter().map(|camera| camera.position);
     points.map(|point| point.position).chain(eyes).collect()
