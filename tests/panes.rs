@@ -23,25 +23,31 @@ fn sheet(z: f64, material: Material) -> Flat {
     }
 }
 
+/// A sensor under the plate of CIE 171, case 5.5, with parallel light in a state about Y, which is its s axis.
+fn under_a_plate(degrees: f64, state: [f64; 4]) -> String {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let eye = Eye {
+        at: DVec3::ZERO,
+        normal: DVec3::Z,
+        axis: DVec3::Y,
+        fixed: true,
+    };
+    let source = Source {
+        state,
+        axis: DVec3::Y,
+        strength: 1.0,
+        ..parallel(v(sin, 0.0, cos))
+    };
+    written(&[sheet(1.0, pane(1.52, 1.0))], &[source], &[eye])
+}
+
 /// Case 5.5 of CIE 171 through the whole program: parallel light across a plate, T about its plane of incidence.
 #[test]
 fn case_5_5_a_clear_plate() {
     for (degrees, ts, tp) in slab() {
-        let (sin, cos) = f64::to_radians(degrees).sin_cos();
-        let plate = [sheet(1.0, pane(1.52, 1.0))];
-        let eye = Eye {
-            at: DVec3::ZERO,
-            normal: DVec3::Z,
-            axis: DVec3::Y,
-            fixed: true,
-        };
-        let source = Source {
-            state: [1.0, 0.0, 0.0, 0.0],
-            strength: 1.0,
-            ..parallel(v(sin, 0.0, cos))
-        };
+        let cos = f64::to_radians(degrees).cos();
+        let text = under_a_plate(degrees, [1.0, 0.0, 0.0, 0.0]);
         for estimator in ["auto", "gather", "local"] {
-            let text = written(&plate, &[source], &[eye]);
             let run = format!("[run]\nestimator = '{estimator}'\nsamples = 64");
             let reading = measured(&format!("{text}{run}"))[0];
             // Light along Y is s-polarised. The table has six digits.
@@ -60,21 +66,8 @@ fn case_5_5_a_clear_plate() {
 #[test]
 fn polarised_light_through_a_pane_differs_from_the_scalar_model() {
     for (degrees, ts, tp) in slab() {
-        let (sin, cos) = f64::to_radians(degrees).sin_cos();
-        let plate = [sheet(1.0, pane(1.52, 1.0))];
-        let eye = Eye {
-            at: DVec3::ZERO,
-            normal: DVec3::Z,
-            axis: DVec3::Y,
-            fixed: true,
-        };
-        let source = Source {
-            state: [1.0, 1.0, 0.0, 0.0],
-            axis: DVec3::Y,
-            strength: 1.0,
-            ..parallel(v(sin, 0.0, cos))
-        };
-        let text = written(&plate, &[source], &[eye]);
+        let cos = f64::to_radians(degrees).cos();
+        let text = under_a_plate(degrees, [1.0, 1.0, 0.0, 0.0]);
         let run = "[run]\ncompare = ['scalar', 'diffuse']\nsamples = 64";
         let reading = measured(&format!("{text}{run}"))[0];
         // The table has six digits.

@@ -50,6 +50,11 @@ pub(crate) struct Step {
     pub through: bool,
 }
 
+/// A unit vector that meets a normal under the given cosine, mirrored.
+fn mirrored(arriving: DVec3, normal: DVec3, cos: f64) -> DVec3 {
+    (arriving + normal * (2.0 * cos)).normalize()
+}
+
 impl Step {
     /// The same surface met along a direction, if this is what it does to light.
     #[inline]
@@ -70,8 +75,8 @@ impl Step {
         match self.through {
             true => self.arriving,
             false => {
-                let cos = angle_of_incidence(self.arriving, self.normal).0;
-                (self.arriving + self.normal * (2.0 * cos)).normalize()
+                let (cos, _) = angle_of_incidence(self.arriving, self.normal);
+                mirrored(self.arriving, self.normal, cos)
             }
         }
     }
@@ -120,6 +125,11 @@ impl Meeting<'_> {
     /// True where the back of a one-sided surface is met: it neither reflects nor emits.
     pub(crate) fn black(&self) -> bool {
         !self.front && !self.material.two_sided
+    }
+
+    /// A direction that arrives here, mirrored.
+    pub(crate) fn mirrored(&self, arriving: DVec3) -> DVec3 {
+        mirrored(arriving, self.normal, self.angle.0)
     }
 
     /// The mirror-like part and what is let through.
@@ -255,7 +265,7 @@ impl<'a> Medium<'a> {
                 let side = if own { 1.0 } else { -1.0 };
                 from = hit.position + meeting.normal * (side * self.surfaces.offset());
                 if own {
-                    toward = (toward + meeting.normal * (2.0 * meeting.angle.0)).normalize();
+                    toward = meeting.mirrored(toward);
                     break;
                 }
             }
@@ -367,7 +377,7 @@ impl<'a> Medium<'a> {
             let side = if pass { -1.0 } else { 1.0 };
             from = hit.position + meeting.normal * (side * self.surfaces.offset());
             if !pass {
-                toward = (toward + meeting.normal * (2.0 * meeting.angle.0)).normalize();
+                toward = meeting.mirrored(toward);
             }
         }
         if !self

@@ -295,7 +295,7 @@ impl<'a> Walk<'a> {
         let [lobe, u, v, split] = self.uniforms.at(self.depth, self.role.scattering());
         self.origin = vertex.position;
         let arriving = self.direction;
-        let mirrored = || (arriving + normal * (2.0 * meeting.angle.0)).normalize();
+        let mirrored = || meeting.mirrored(arriving);
         if let (Role::Looking(lookout), 1) = (&self.role, self.depth) {
             let probability = odds.mirrored(true);
             if split < probability {
