@@ -230,7 +230,7 @@ fn rules_of_the_scene_file_hold_together_until_one_is_given_on_the_command_line(
     folder.run("out", &[]);
     assert_eq!(folder.json("out/summary.json")["samples"], 192);
     // `samples` no longer stops the run, nor does the error of the file.
-    folder.run("out", &["--relative-error", "0.02"]);
+    folder.run("out", &["--relative-error", "0.002"]);
     let summary = folder.json("out/summary.json");
     assert_eq!(summary["stop"], "relative_error");
     assert!(summary["samples"].as_u64().unwrap() > 192, "{summary}");

@@ -5,6 +5,7 @@
 //! each of them errs at every sensor. The shares are then those that bring all sensors to one relative error at the least
 //! cost; as they depend on scene and seed alone, the sums of a run do not depend on when it stops.
 
+use crate::bridge::Launches;
 use crate::gather::{Aims, Observer, gather};
 use crate::local::{Sensors, local};
 use crate::medium::Medium;
@@ -41,10 +42,12 @@ const TELLING: f64 = 16.0;
 /// The same where nothing is scattered and sensors see lamps by mirrors alone, of which each has some of its own.
 const TELLING_BETWEEN_MIRRORS: f64 = 4.0;
 
-/// Cost of a ray, of joining a vertex to a sensor, and of looking into mirrors from a vertex, relative to each other.
+/// Cost of a ray, of joining a vertex to a sensor, of looking into mirrors from a vertex, and of a bridge between two, relative to
+/// each other.
 const RAY: f64 = 1.0;
 const JOIN: f64 = 0.2;
 const LOOK: f64 = 4.0;
+const BRIDGE: f64 = 0.03;
 
 /// How much a walk from the emitters counts for where differences between means over many points are asked for.
 const IN_DIFFERENCES: f64 = 0.2;
@@ -65,7 +68,7 @@ pub enum Sharing<'a> {
 
 impl Sharing<'_> {
     /// How much a walk from the emitters counts for, beside the density of its points.
-    fn trust(self) -> f64 {
+    pub(crate) fn trust(self) -> f64 {
         match self {
             Self::Points => 1.0,
             Self::Differences => IN_DIFFERENCES,
@@ -105,6 +108,13 @@ impl Allocation {
     pub(crate) fn walks(&self, sensor: usize, launched: u64) -> u64 {
         let walks = u128::from(launched) * u128::from(self.parts[sensor]);
         u64::try_from(walks.div_ceil(u128::from(PARTS))).unwrap_or(u64::MAX)
+    }
+
+    /// The last walk from the emitters that has been taken when a sensor's walk of that index is.
+    #[inline]
+    pub(crate) fn partner(&self, sensor: usize, walk: u64) -> u64 {
+        let launched = u128::from(walk) * u128::from(PARTS) / u128::from(self.parts[sensor]);
+        u64::try_from(launched).unwrap_or(u64::MAX)
     }
 
     /// Walks from the emitters for one walk from this sensor.
@@ -283,6 +293,7 @@ impl Pilot<'_> {
     fn round(&self, stream: Stream) -> Round {
         let count = self.channels.count;
         let mut launched = vec![0.0; self.receivers.len() * count];
+        let mut launches = Launches::default();
         let local = local::<1>(
             &self.passes,
             &self.channels,
@@ -294,6 +305,7 @@ impl Pilot<'_> {
             stream,
             0..LAUNCHED,
             &mut launched,
+            &mut launches,
         );
         let mut gathered = vec![0.0; launched.len()];
         let mut effort = Effort::default();
@@ -306,6 +318,8 @@ impl Pilot<'_> {
                         receiver: &self.receivers[sensor],
                         aims: &self.aims[sensor],
                         rivalry: self.tried.rivalry(sensor),
+                        launches: &launches,
+                        partners: &|_| 0..LAUNCHED,
                     },
                     stream.branch(sensor as u64),
                     0..self.walks,
@@ -327,7 +341,7 @@ impl Pilot<'_> {
             gathered: means(&gathered, self.walks),
             cost_launched: RAY * local.rays as f64 + JOIN * local.joins as f64,
             // Every other ray of a walk from a sensor leads to a vertex that may look into mirrors.
-            cost_gathered: (RAY + 0.5 * look) * effort.rays as f64,
+            cost_gathered: (RAY + 0.5 * look) * effort.rays as f64 + BRIDGE * effort.bridges as f64,
         }
     }
 }

@@ -1,11 +1,13 @@
 //! Which estimator a scene is given, and what each cannot see.
 
+use crate::bridge;
 use crate::emitters::Emitters;
 use crate::engine::Engine;
 use crate::medium::Medium;
 use crate::pass::{Modelled, is_mirrorlike};
 use crate::receiver::Receiver;
 use crate::trace::Techniques;
+use malus_geometry::Surfaces;
 use malus_scene::{Estimator, Material, Scene, Settings};
 
 /// A local estimate is not to be trusted where a surface in front of a sensor is nearer than this share of the mean
@@ -13,14 +15,21 @@ use malus_scene::{Estimator, Material, Scene, Settings};
 const TRUSTED: f64 = 0.02;
 
 /// The techniques of an estimator, and one sentence on why it is used.
-pub(crate) fn techniques(asked: Estimator, receivers: &[Receiver]) -> (Techniques, &'static str) {
+pub(crate) fn techniques(
+    asked: Estimator,
+    surfaces: &Surfaces,
+    receivers: &[Receiver],
+) -> (Techniques, &'static str) {
     let joined = receivers.iter().any(Receiver::is_irradiance);
+    let block = if joined { bridge::walks(surfaces) } else { 0 };
     match asked {
         Estimator::Local | Estimator::Direct => (Techniques::ALONE, "asked for"),
         Estimator::Gather => (
             Techniques {
                 mirrored: false,
                 local: 0.0,
+                bridged: 0.0,
+                block: 0,
                 gather: true,
             },
             "asked for",
@@ -29,6 +38,8 @@ pub(crate) fn techniques(asked: Estimator, receivers: &[Receiver]) -> (Technique
             Techniques {
                 mirrored: true,
                 local: if joined { 1.0 } else { 0.0 },
+                bridged: block as f64,
+                block,
                 gather: true,
             },
             "walks from both ends and images in flat mirrors, weighted against each other: nothing is lost",
@@ -37,7 +48,7 @@ pub(crate) fn techniques(asked: Estimator, receivers: &[Receiver]) -> (Technique
 }
 
 /// Nearest surface in front of a sensor as a share of the mean distance of what it sees.
-fn clearance(surfaces: &malus_geometry::Surfaces, receiver: &Receiver) -> f64 {
+fn clearance(surfaces: &Surfaces, receiver: &Receiver) -> f64 {
     const SIDE: i32 = 8;
     let mut nearest = f64::INFINITY;
     let (mut sum, mut count) = (0.0, 0.0);

@@ -63,6 +63,8 @@ pub(crate) struct Cover {
     room: f64,
     /// Of more than one: the greatest mirror-like reflectance at cosines k/STEPS.
     mirror: Vec<f64>,
+    /// By how much likelier a walk from an emitter scatters than one from a sensor.
+    pub launched: f64,
 }
 
 impl Cover {
@@ -86,6 +88,7 @@ impl Cover {
             even,
             room: 1.0,
             mirror: Vec::new(),
+            launched: 1.0,
         };
         if cover.optics.len() > 1 {
             let greatest = |step: usize| {
@@ -96,6 +99,12 @@ impl Cover {
             cover.mirror = (0..=STEPS).map(greatest).collect();
             let both = mean(|cos| cover.scattered(cos, 1.0 - cos * cos) + cover.mirrored(cos));
             cover.room = 1.0 / both.max(1.0);
+        }
+        let pane = cover.optics.iter().any(Optics::is_pane);
+        if cover.even.is_some() && cover.scatters() && !pane {
+            let scattered = cover.diffuse(1.0, 0.0);
+            let left = 1.0 - cover.mirror_bound(0.0, 1.0).min(1.0 - scattered);
+            cover.launched = (left / scattered).sqrt();
         }
         cover
     }

@@ -153,9 +153,9 @@ fn follow<'a>(
         );
     }
     Effort {
-        joins: 0,
         rays,
         truncated: u64::from(walk.truncated),
+        ..Effort::default()
     }
 }
 

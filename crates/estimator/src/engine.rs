@@ -1,6 +1,7 @@
 //! What a run works with: the walks it takes, and the sums they go to.
 
 use crate::allocation::Allocation;
+use crate::bridge::{self, Launches};
 use crate::direct::{Cells, direct};
 use crate::gather::{Aims, Observer, gather};
 use crate::local::{Sensors, local};
@@ -10,9 +11,13 @@ use crate::receiver::Receiver;
 use crate::statistics::{MergeError, REPLICAS, Replica, Tally};
 use malus_geometry::Targets;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Walks that a step takes in all, so that a watcher is asked several times a second.
 const STEP: u64 = 1 << 14;
+
+/// How much longer a step may be to take whole blocks of walks.
+const LONG: u64 = 8;
 
 /// Sensors of one replica that one task gathers at.
 const TASK: usize = 16;
@@ -66,7 +71,13 @@ impl<const N: usize> Engine<'_, N> {
             Some(_) => 1,
             None => self.receivers.len().max(1) as u64,
         };
-        (STEP / (u64::from(REPLICAS) * joined)).max(1)
+        let step = (STEP / (u64::from(REPLICAS) * joined)).max(1);
+        // Whole blocks, unless one alone is much longer.
+        let block = self.passes.techniques.block.max(1);
+        match step * LONG / block {
+            0 => step,
+            _ => step.next_multiple_of(block),
+        }
     }
 
     /// Takes every replica to `until` walks. Each sum is added to by one task, in the order of the walks.
@@ -78,11 +89,12 @@ impl<const N: usize> Engine<'_, N> {
             if let Some(cells) = self.cells {
                 effort += self.advance_direct(cells, replica, until);
             } else {
+                let mut launches = Launches::default();
                 if techniques.local > 0.0 {
-                    effort += self.advance_local(replica, until);
+                    effort += self.advance_local(replica, until, &mut launches);
                 }
                 if techniques.gather {
-                    effort += self.advance_gather(replica, until);
+                    effort += self.advance_gather(replica, until, &launches);
                 }
             }
             replica.points = until;
@@ -99,16 +111,39 @@ impl<const N: usize> Engine<'_, N> {
         }
     }
 
-    fn advance_local(&self, replica: &mut Replica, until: u64) -> Effort {
+    /// The walks from the emitters, of which this is one, that walks from sensors are joined to.
+    fn block(&self, partner: u64) -> Range<u64> {
+        bridge::block(partner, self.passes.techniques.block)
+    }
+
+    fn advance_local(&self, replica: &mut Replica, until: u64, launches: &mut Launches) -> Effort {
         let stream = Stream::new(self.seed, replica.id);
-        local::<N>(
-            &self.passes,
-            &self.channels,
-            &self.sensors(),
-            stream,
-            replica.points..until,
-            &mut replica.sums[self.length()..],
-        )
+        // Walks from the sensors are joined to whole blocks of them.
+        let mut whole = replica.points..until;
+        if self.passes.techniques.bridged > 0.0 && !whole.is_empty() {
+            whole = self.block(whole.start).start..self.block(whole.end - 1).end;
+        }
+        launches.first = whole.start;
+        let mut launch = |sensors: &Sensors, range, sums: &mut [f64]| {
+            local::<N>(
+                &self.passes,
+                &self.channels,
+                sensors,
+                stream,
+                range,
+                sums,
+                launches,
+            )
+        };
+        let nobody = Sensors {
+            receivers: &[],
+            ..self.sensors()
+        };
+        launch(&nobody, whole.start..replica.points, &mut []);
+        let sums = &mut replica.sums[self.length()..];
+        let effort = launch(&self.sensors(), replica.points..until, sums);
+        launch(&nobody, until..whole.end, &mut []);
+        effort
     }
 
     fn advance_direct(&self, cells: &Cells, replica: &mut Replica, until: u64) -> Effort {
@@ -124,7 +159,7 @@ impl<const N: usize> Engine<'_, N> {
         )
     }
 
-    fn advance_gather(&self, replica: &mut Replica, until: u64) -> Effort {
+    fn advance_gather(&self, replica: &mut Replica, until: u64, launches: &Launches) -> Effort {
         let stream = Stream::new(self.seed, replica.id);
         let taken = replica.points;
         let efforts: Vec<Effort> = replica.sums[..self.length()]
@@ -145,6 +180,8 @@ impl<const N: usize> Engine<'_, N> {
                         receiver,
                         aims: &self.aims[sensor],
                         rivalry: self.allocation.rivalry(sensor),
+                        launches,
+                        partners: &|walk| self.block(self.allocation.partner(sensor, walk)),
                     },
                     stream,
                     walks(taken)..walks(until),

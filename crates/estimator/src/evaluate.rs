@@ -16,7 +16,7 @@ use chain::Chain;
 
 use crate::emitters::State;
 use crate::medium::Step;
-use crate::path::{Event, Vertex};
+use crate::path::{Bridge, Event, Vertex};
 use crate::receiver::Receiver;
 use crate::variation::Variation;
 use glam::DVec3;
@@ -62,6 +62,15 @@ fn scattered<const N: usize>(optics: &Optics, normal: DVec3, direction: DVec3) -
     let (cos, sin2) = angle_of_incidence(direction, normal);
     let column = optics.leaving::<N>(cos, sin2).carried();
     Some((column, leaving(direction, normal).carried()))
+}
+
+/// What comes over a bridge, for unit scattered flux.
+fn bridged<const N: usize>(optics: &Optics, bridge: &Bridge) -> Light<N> {
+    if optics.polarises_scattering() {
+        scattered(optics, bridge.from.normal, -bridge.toward)
+    } else {
+        None
+    }
 }
 
 /// What a scattering surface takes in of light that arrives.

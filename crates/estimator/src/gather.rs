@@ -1,6 +1,7 @@
 //! Walks from the sensors, against the light: at every vertex one emitter is looked at, straight and in mirrors, and
 //! emitters met by chance count where looking could not, or was less likely to, find them.
 
+use crate::bridge::{Launches, Partners};
 use crate::evaluate::{Gathering, Strands};
 use crate::glints::Aim;
 use crate::medium::Medium;
@@ -21,6 +22,10 @@ pub(crate) struct Observer<'a> {
     pub aims: &'a Aims<'a>,
     /// Weight of walks from the emitters against its own.
     pub rivalry: f64,
+    /// Walks from the emitters that its own are joined to.
+    pub launches: &'a Launches,
+    /// Which of them a walk is joined to.
+    pub partners: &'a dyn Fn(u64) -> Range<u64>,
 }
 
 /// Adds the walks `range` of one sensor to its sums, those of one variant after those of the other.
@@ -36,6 +41,8 @@ pub(crate) fn gather<const N: usize>(
         receiver,
         aims,
         rivalry,
+        launches,
+        partners,
     } = observer;
     let techniques = Techniques {
         local: rivalry * passes.techniques.local,
@@ -46,16 +53,22 @@ pub(crate) fn gather<const N: usize>(
     let count = channels.count;
     for index in range {
         let uniforms = stream.walk(index);
+        let joined = |landings| {
+            let block = (techniques.bridged > 0.0).then(|| partners(index))?;
+            Some(Partners::new(landings, launches.first, &block))
+        };
         let way = Way {
             techniques,
             medium: passes.main,
             receiver: *receiver,
             uniforms,
             aim: aims.main.as_ref(),
+            partners: joined(&launches.main),
         };
-        let mut main = Reader::<N>::new(receiver, &passes.main);
+        let variants = passes.main.variations.len();
+        let mut main = Reader::<N>::new(receiver, &passes.main, 0);
         if let Some(channel) = channels.along {
-            let mut scalar = Reader::<1>::new(receiver, &passes.main);
+            let mut scalar = Reader::<1>::new(receiver, &passes.main, variants);
             effort += way.follow(&mut path, |path, part| {
                 main.read(path, part);
                 scalar.read(path, part);
@@ -66,10 +79,11 @@ pub(crate) fn gather<const N: usize>(
         }
         main.add(sums, count, 0, Some(channels.found));
         if let (Some(medium), Some(channel)) = (passes.apart, channels.apart) {
-            let mut apart = Reader::<1>::new(receiver, &medium);
+            let mut apart = Reader::<1>::new(receiver, &medium, 0);
             let way = Way {
                 medium,
                 aim: aims.apart.as_ref(),
+                partners: joined(&launches.apart),
                 ..way
             };
             effort += way.follow(&mut path, |path, part| apart.read(path, part));
@@ -86,11 +100,11 @@ enum Reader<'r, const N: usize> {
 }
 
 impl<'r, const N: usize> Reader<'r, N> {
-    /// Nothing read yet.
-    fn new(receiver: &'r Receiver, medium: &Medium<'r>) -> Self {
+    /// Nothing read yet; of what walks from the emitters bring, it reads from the place `first` on.
+    fn new(receiver: &'r Receiver, medium: &Medium<'r>, first: usize) -> Self {
         match medium.variations {
-            [alone] => Self::Alone(Gathering::new(receiver), alone),
-            _ => Self::Several(Strands::new(receiver, medium.spread)),
+            [alone] => Self::Alone(Gathering::new(receiver, first), alone),
+            _ => Self::Several(Strands::new(receiver, medium.spread, first)),
         }
     }
 
@@ -175,6 +189,8 @@ pub(crate) struct Way<'w> {
     pub uniforms: Uniforms,
     /// How its companion is aimed.
     pub aim: Option<&'w Aim<'w>>,
+    /// The walks from the emitters that it is joined to.
+    pub partners: Option<Partners<'w>>,
 }
 
 impl<'w> Way<'w> {
@@ -190,12 +206,16 @@ impl<'w> Way<'w> {
             receiver,
             uniforms,
             aim,
+            partners,
         } = *self;
-        let walk = Walk::from_sensor(medium, techniques, uniforms, &receiver, aim);
+        let walk = Walk::from_sensor(medium, techniques, uniforms, &receiver, aim, partners);
         let companion =
             aim.and_then(|aim| Walk::aimed(medium, techniques, uniforms, &receiver, aim));
-        let mut effort = Effort::default();
-        for mut walk in std::iter::once(walk).chain(companion) {
+        let mut effort = Effort {
+            bridges: partners.map_or(0, |it| it.landings.len() as u64),
+            ..Effort::default()
+        };
+        let mut take = |mut walk: Walk<'w>| {
             path.clear();
             walk.look(path);
             read(path, Part::Start);
@@ -220,6 +240,10 @@ impl<'w> Way<'w> {
                 path.vertices.push(vertex);
                 known = 1;
             }
+        };
+        take(walk);
+        if let Some(companion) = companion {
+            take(companion);
         }
         effort
     }

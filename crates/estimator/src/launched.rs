@@ -6,6 +6,7 @@ use crate::medium::Medium;
 use crate::mirrors::Viewer;
 use crate::trace::Techniques;
 use glam::DVec3;
+use std::f64::consts::PI;
 
 /// The techniques that compete with joining a point of a walk to a sensor, in units of that.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -14,6 +15,8 @@ pub(crate) struct Rival {
     looked: f64,
     /// Walks from the sensor that meet the emitter by chance.
     met: f64,
+    /// Walks from the sensor that are joined to this one at its last diffuse event.
+    bridged: f64,
     /// Whether this is the first point that scatters.
     first: bool,
     /// Nothing else can have found this light: it comes from a source without area by a mirror that none looks into.
@@ -27,13 +30,29 @@ impl Rival {
     /// `walks` walks from emitters for one such walk.
     #[inline]
     pub(crate) fn weight(&self, coupling: f64, diffuse: f64, walks: f64) -> f64 {
-        let rivals = if self.first {
+        1.0 / (1.0 + coupling / walks * (self.searching(diffuse) + self.bridged))
+    }
+
+    /// Walks from the sensor that find the emitter by themselves.
+    #[inline]
+    pub(crate) fn searching(&self, diffuse: f64) -> f64 {
+        if self.first {
             self.looked + diffuse * self.met
         } else {
             diffuse * (self.looked + self.met)
-        };
-        1.0 / (1.0 + coupling / walks * rivals)
+        }
     }
+}
+
+/// The last diffuse event of a walk.
+#[derive(Debug, Clone)]
+struct Left {
+    /// What competes at the next point, but for the probability of being scattered there.
+    rival: Rival,
+    /// Cosine of the walk's direction to the normal.
+    cos: f64,
+    /// Probability of the event.
+    diffuse: f64,
 }
 
 /// A walk from an emitter, as other techniques would see it.
@@ -42,10 +61,10 @@ pub(crate) struct Launched<'a> {
     site: Site<'a>,
     /// Direction in which it left.
     leaving: DVec3,
-    /// Mirrors and panes passed before the first diffuse event.
+    /// Mirrors and panes passed since the last diffuse event.
     pub chain: Passed,
-    /// After that event: what competes at the next point, but for the probability of being scattered there.
-    rival: Option<Rival>,
+    /// After such an event: how the walk left it.
+    left: Option<Left>,
 }
 
 impl<'a> Launched<'a> {
@@ -55,7 +74,7 @@ impl<'a> Launched<'a> {
             site: start.site,
             leaving: start.direction,
             chain: Passed::nothing(),
-            rival: None,
+            left: None,
         }
     }
 
@@ -72,8 +91,16 @@ impl<'a> Launched<'a> {
         viewer: Viewer,
         cos: f64,
     ) -> Rival {
-        if let Some(rival) = self.rival {
-            return rival;
+        if let Some(left) = &self.left {
+            let bridged = if self.chain.is_clear() && !left.rival.alone {
+                techniques.bridged * PI * self.chain.square() / (left.cos * cos * left.diffuse)
+            } else {
+                0.0
+            };
+            return Rival {
+                bridged,
+                ..left.rival
+            };
         }
         let area_density = self.site.area_density();
         let probability = match self.chain.facets() {
@@ -93,15 +120,16 @@ impl<'a> Launched<'a> {
                 0.0
             },
             met: area_density.map_or(0.0, |density| 1.0 / density),
+            bridged: 0.0,
             first: true,
             alone: area_density.is_none() && probability <= 0.0,
         }
     }
 
-    /// Passes a diffuse event at a point with this rival; `diffuse` is its probability, `reverse` that of the same event
-    /// on the way back.
-    pub(crate) fn scatter(&mut self, at: Rival, diffuse: f64, reverse: f64) {
-        let passed = if at.first {
+    /// Passes a diffuse event at a point with this rival, by which the walk leaves under the cosine `cos`; `diffuse` is its
+    /// probability, `reverse` that of the same event on the way back.
+    pub(crate) fn scatter(&mut self, at: Rival, cos: f64, diffuse: f64, reverse: f64) {
+        let rival = if at.first {
             Rival {
                 looked: at.looked / diffuse,
                 met: at.met * reverse / diffuse,
@@ -115,6 +143,11 @@ impl<'a> Launched<'a> {
                 ..at
             }
         };
-        self.rival = Some(passed);
+        self.left = Some(Left {
+            rival,
+            cos,
+            diffuse,
+        });
+        self.chain = Passed::nothing();
     }
 }

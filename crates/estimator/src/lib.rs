@@ -6,6 +6,7 @@
 
 mod allocation;
 mod beam;
+mod bridge;
 mod choose;
 mod cover;
 mod direct;

@@ -3,6 +3,7 @@
 mod joining;
 
 use crate::allocation::Allocation;
+use crate::bridge::Launches;
 use crate::emitters::Start;
 use crate::evaluate::{Carrying, sent};
 use crate::pass::{Channels, Effort, Passes};
@@ -33,6 +34,7 @@ pub(crate) fn local<'a, const N: usize>(
     stream: Stream,
     range: Range<u64>,
     sums: &mut [f64],
+    launches: &mut Launches,
 ) -> Effort {
     let mut effort = Effort::default();
     let variations = passes.main.variations;
@@ -44,6 +46,8 @@ pub(crate) fn local<'a, const N: usize>(
         let uniforms = stream.walk(index);
         // A start on a hidden part of an emitter carries nothing.
         let Some(start) = passes.main.emitters.start(uniforms) else {
+            launches.main.start();
+            launches.apart.start();
             continue;
         };
         // Where walks from the sensors look at emitters, they alone answer for light that comes straight.
@@ -62,6 +66,7 @@ pub(crate) fn local<'a, const N: usize>(
                 passes.main,
                 &start,
                 2 * variations.len(),
+                &mut launches.main,
                 |path, fluxes| {
                     carry(&mut main, variations, path, fluxes, 0);
                     carry(&mut scalar, variations, path, fluxes, variations.len());
@@ -78,6 +83,7 @@ pub(crate) fn local<'a, const N: usize>(
                 passes.main,
                 &start,
                 variations.len(),
+                &mut launches.main,
                 |path, fluxes| carry(&mut main, variations, path, fluxes, 0),
                 |sensor, fluxes, arrival| {
                     let sums = &mut sums[sensor * width..][..width];
@@ -92,6 +98,7 @@ pub(crate) fn local<'a, const N: usize>(
                 medium,
                 &start,
                 variations.len(),
+                &mut launches.apart,
                 |path, fluxes| carry(&mut scalar, variations, path, fluxes, 0),
                 |sensor, fluxes, arrival| {
                     let sums = &mut sums[sensor * width..][..width];

@@ -17,6 +17,8 @@ pub(crate) struct Passed {
     facets: Option<Vec<u32>>,
     /// Probability of the events on the way.
     pub odds: f64,
+    /// Whether there was a pane.
+    panes: bool,
     /// Length of the way, in m.
     length: f64,
 }
@@ -27,6 +29,7 @@ impl Passed {
         Self {
             facets: Some(Vec::new()),
             odds: 1.0,
+            panes: false,
             length: 0.0,
         }
     }
@@ -40,6 +43,12 @@ impl Passed {
         }
     }
 
+    /// Passes a pane.
+    pub(crate) fn pass(&mut self, odds: f64) {
+        self.odds *= odds;
+        self.panes = true;
+    }
+
     /// Goes on by a distance in m.
     pub(crate) fn go(&mut self, distance: f64) {
         self.length += distance;
@@ -48,6 +57,11 @@ impl Passed {
     /// Whether no mirror has been passed.
     pub(crate) fn is_straight(&self) -> bool {
         self.facets.as_ref().is_some_and(Vec::is_empty)
+    }
+
+    /// Whether nothing has been passed.
+    pub(crate) fn is_clear(&self) -> bool {
+        self.is_straight() && !self.panes
     }
 
     /// The mirrors passed, if all can be looked into.
@@ -94,6 +108,10 @@ pub(crate) struct Lookout {
     cos: f64,
     /// See [`Lookout::coupling`].
     local: f64,
+    /// The same for walks from emitters that are joined to this walk where it first scattered.
+    bridged: f64,
+    /// Whether this is where it did.
+    bridge: bool,
     /// How often a walk that is aimed at small mirrors goes the way of this one, for one that is not.
     aimed: f64,
     /// Whether it is the sensor.
@@ -117,6 +135,8 @@ impl Lookout {
             diffuse: 1.0,
             cos: viewer.normal.dot(direction),
             local: 0.0,
+            bridged: 0.0,
+            bridge: false,
             aimed: 0.0,
             sensor: true,
         }
@@ -140,20 +160,46 @@ impl Lookout {
         self.aimed = density * PI / self.cos;
     }
 
-    /// How often walks from emitters come by a point that this walk has reached and are joined to the sensor there, for
-    /// one walk from the sensor that looks at an emitter from it: multiplied by the density with which such a walk
-    /// arrives, it competes with the probability of looking.
+    /// How often walks from emitters come by a point that this walk has reached and are joined to the sensor there, or
+    /// from there to this walk, for one walk from the sensor that looks at an emitter from it: multiplied by the density
+    /// with which such a walk arrives, it competes with the probability of looking.
     ///
     /// The walk arrives under the cosine `cos`; a walk that came the other way would be scattered with the probability
-    /// `diffuse`; `walks` are taken from emitters for one from each sensor.
-    pub(crate) fn coupling(&self, cos: f64, diffuse: f64, walks: f64) -> f64 {
+    /// `diffuse`.
+    pub(crate) fn coupling(&self, cos: f64, diffuse: f64, techniques: Techniques) -> f64 {
+        self.joined(cos, diffuse, techniques) + self.crossed(cos, diffuse, techniques)
+    }
+
+    /// Of those, the walks that are joined to the sensor.
+    pub(crate) fn joined(&self, cos: f64, diffuse: f64, techniques: Techniques) -> f64 {
         if !self.sensor {
             self.local * diffuse
-        } else if self.alone || !self.chain.is_straight() || walks <= 0.0 {
+        } else if self.alone || !self.chain.is_straight() || techniques.local <= 0.0 {
             0.0
         } else {
-            walks * PI * self.chain.square() / (self.cos * cos * self.chain.odds)
+            techniques.local * self.apart(cos) / self.chain.odds
         }
+    }
+
+    /// Of those, the walks that are joined to this walk where it first scattered.
+    fn crossed(&self, cos: f64, diffuse: f64, techniques: Techniques) -> f64 {
+        if !self.bridge {
+            self.bridged * diffuse
+        } else if self.chain.is_clear() {
+            techniques.bridged * self.apart(cos) / self.diffuse
+        } else {
+            0.0
+        }
+    }
+
+    /// π r²/(cos cos′) of the way from the last point, in m².
+    fn apart(&self, cos: f64) -> f64 {
+        PI * self.chain.square() / (self.cos * cos)
+    }
+
+    /// Whether the walk has not been scattered yet.
+    pub(crate) fn is_sensor(&self) -> bool {
+        self.sensor
     }
 
     /// Passes a diffuse event, which has the probability `diffuse` this way and `reverse` the other way.
@@ -164,10 +210,12 @@ impl Lookout {
         direction: DVec3,
         diffuse: f64,
         reverse: f64,
-        walks: f64,
+        techniques: Techniques,
     ) {
         // Between the last point and this one, both ways pass the same distances: only the ends differ.
-        self.local = self.coupling(arriving_cos, reverse, walks) / diffuse;
+        self.local = self.joined(arriving_cos, reverse, techniques) / diffuse;
+        self.bridged = self.crossed(arriving_cos, reverse, techniques) / diffuse;
+        self.bridge = self.sensor;
         self.aimed = 0.0;
         self.sensor = false;
         self.alone = false;
@@ -210,7 +258,7 @@ impl Lookout {
         // events on the way: over thousands of them their probability leaves the range of numbers.
         let density = medium.emitters.density(self.choice, exitance);
         let by_chance = self.diffuse * self.cos / PI;
-        let local = self.local * density;
+        let local = (self.local + self.bridged) * density;
         if probability <= 0.0 {
             return 1.0 / (1.0 + local + self.aimed);
         }

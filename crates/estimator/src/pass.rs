@@ -184,6 +184,8 @@ pub(crate) struct Effort {
     pub rays: u64,
     /// Vertices joined to sensors.
     pub joins: u64,
+    /// Vertices of walks from emitters that walks from sensors were joined to.
+    pub bridges: u64,
     /// Walks cut off at their greatest length.
     pub truncated: u64,
 }
@@ -192,6 +194,7 @@ impl AddAssign for Effort {
     fn add_assign(&mut self, other: Self) {
         self.rays += other.rays;
         self.joins += other.joins;
+        self.bridges += other.bridges;
         self.truncated += other.truncated;
     }
 }

@@ -1,5 +1,6 @@
 //! What a walk has met, as light is sent along it.
 
+use crate::bridge::{Candidates, Landing};
 use crate::emitters::State;
 use crate::launched::Rival;
 use crate::medium::Step;
@@ -40,6 +41,19 @@ pub(crate) struct Connection<'a> {
     pub mirrored: bool,
 }
 
+/// A point of a walk from an emitter, seen from one of a walk from a sensor.
+#[derive(Debug, Clone)]
+pub(crate) struct Bridge<'a> {
+    /// Where the light is scattered.
+    pub from: &'a Landing,
+    /// The flux that is scattered there, in every variant and model.
+    pub fluxes: &'a [f64],
+    /// Unit vector to there.
+    pub toward: DVec3,
+    /// Irradiance of the receiving surface for one unit of scattered flux, weighted against other techniques, in 1/m².
+    pub weight: f64,
+}
+
 /// A point where a walk met a surface.
 #[derive(Debug, Clone)]
 pub(crate) struct Vertex {
@@ -59,6 +73,12 @@ pub(crate) struct Vertex {
     pub emission: f64,
     /// What this point sees of the emitters, if it was asked: a range of the path's connections.
     pub connections: Range<usize>,
+    /// Walks from the emitters that it is joined to, where either end polarises: a range of the path's bridges.
+    pub bridges: Range<usize>,
+    /// What the others bring: a range of the path's.
+    pub lit: Range<usize>,
+    /// Probability of going on into a random direction.
+    pub diffuse: f64,
     /// How the walk goes on.
     pub event: Event,
     /// Probability of that event.
@@ -78,6 +98,12 @@ pub(crate) struct Path<'a> {
     pub vertices: Vec<Vertex>,
     /// What they see of the emitters.
     pub connections: Vec<Connection<'a>>,
+    /// Walks from the emitters that they are joined to.
+    pub bridges: Vec<Bridge<'a>>,
+    /// Irradiance by those, where neither end polarises, in every variant and model.
+    pub lit: Vec<f64>,
+    /// Room to choose some of them.
+    pub candidates: Candidates,
     /// Mirrors and panes on the ways to them.
     pub steps: Vec<Step>,
 }
@@ -87,6 +113,8 @@ impl Path<'_> {
     pub(crate) fn clear(&mut self) {
         self.vertices.clear();
         self.connections.clear();
+        self.bridges.clear();
+        self.lit.clear();
         self.steps.clear();
     }
 }

@@ -136,7 +136,7 @@ fn take<const N: usize>(
     let passes = Passes {
         main: modelled.medium(scene, &emitters),
         apart: None,
-        techniques: techniques(Estimator::Auto, &[]).0,
+        techniques: techniques(Estimator::Auto, &scene.surfaces, &[]).0,
     };
     // Beyond the replicas of the sensors, so that no walk is taken twice.
     let stream = Stream::new(settings.seed, REPLICAS);
@@ -198,13 +198,14 @@ fn pixel<const N: usize>(
         let [u, v, ..] = uniforms.at(0, Purpose::Launch);
         let direction = camera.direction(column as f64 + u, row as f64 + v);
         let receiver = Receiver::of_radiance(camera.position, direction, camera.right);
-        let mut gathering = Gathering::<N>::new(&receiver);
+        let mut gathering = Gathering::<N>::new(&receiver, 0);
         let way = Way {
             techniques: passes.techniques,
             medium: passes.main,
             receiver,
             uniforms,
             aim: None,
+            partners: None,
         };
         way.follow(&mut path, |path, part| {
             gathering.read(path, part, passes.main.first());

@@ -25,6 +25,8 @@ pub(crate) enum Purpose {
     Reflect = 4,
     /// The small mirror that the companion of a walk from a sensor is aimed at.
     Glint = 5,
+    /// Whether a vertex of a long walk takes part in bridges.
+    Bridge = 6,
 }
 
 impl Purpose {
@@ -40,6 +42,8 @@ impl Purpose {
             Self::Connect => SPREAD - 1 + depth,
             Self::Reflect => 2 * SPREAD + 1 + depth,
             Self::Glint => 3 * SPREAD + 1 + depth,
+            // Walks so long are beyond all that is spread evenly.
+            Self::Bridge => 4 * SPREAD + 1 + depth,
         }
     }
 }

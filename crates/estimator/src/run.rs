@@ -33,7 +33,7 @@ impl Checkpoints {
     const TELLING: u64 = 16;
 
     /// Walks a replica of which the spread tells the error at all.
-    const FEWEST: u64 = 4;
+    const FEWEST: u64 = 2;
 
     /// By how much less the error has to be expected than it may be, so that hardly a run goes on.
     const MARGIN: f64 = 2.5;
@@ -204,7 +204,9 @@ fn run_with<const N: usize>(
     let channels = Channels::new(mirrors, settings, representation);
     let emitters = Emitters::new(scene);
     let mut receivers = Receiver::all(scene);
-    let (techniques, estimator_reason) = techniques(settings.estimator, &receivers);
+    let (mut techniques, estimator_reason) =
+        techniques(settings.estimator, &scene.surfaces, &receivers);
+    techniques.bridged *= sharing.trust();
     let main = Modelled::new(scenes, scene, settings.model);
     let apart = channels.apart.map(|_| match settings.model {
         Model::Diffuse => Modelled::new(scenes, scene, Model::Scalar),
@@ -425,5 +427,6 @@ mod tests {
         // Where less is expected to do, a run is judged once more, earlier.
         assert_eq!(first(Some(2.5), 2.0, 3), [4, 16, 20]);
         assert_eq!(first(Some(2.49), 2.0, 3), [8, 16, 20]);
+        assert_eq!(first(Some(3.6), 2.0, 3), [2, 16, 20]);
     }
 }

@@ -6,6 +6,7 @@
 
 mod look;
 
+use crate::bridge::{self, Abutment, ONWARD, Partners};
 use crate::direction::cosine_weighted;
 use crate::emitters::{Choice, Start};
 use crate::glints::Aim;
@@ -13,7 +14,7 @@ use crate::launched::{Launched, Rival};
 use crate::lookout::Lookout;
 use crate::medium::{Medium, Meeting};
 use crate::mirrors::Viewer;
-use crate::path::{Event, Path, Vertex};
+use crate::path::{Bridge, Event, Path, Vertex};
 use crate::random::{Purpose, Uniforms};
 use crate::receiver::Receiver;
 use crate::sight::Seen;
@@ -36,6 +37,10 @@ pub(crate) struct Techniques {
     pub mirrored: bool,
     /// Walks from emitters, each joined to every sensor, for one walk from each sensor; 0: none.
     pub local: f64,
+    /// Walks from emitters that a walk from a sensor is joined to where it first scatters; 0: none.
+    pub bridged: f64,
+    /// The same, as they are counted: a block of walks.
+    pub block: u64,
     /// Walks are taken from the sensors.
     pub gather: bool,
 }
@@ -45,8 +50,23 @@ impl Techniques {
     pub(crate) const ALONE: Self = Self {
         mirrored: false,
         local: 1.0,
+        bridged: 0.0,
+        block: 0,
         gather: false,
     };
+
+    fn launched(self, cover: &crate::cover::Cover) -> f64 {
+        if self.bridged > 0.0 {
+            cover.launched
+        } else {
+            1.0
+        }
+    }
+
+    /// How much less often than by itself a walk from a sensor goes on where it first scatters.
+    pub(crate) fn onward(self) -> f64 {
+        if self.bridged > 0.0 { ONWARD } else { 1.0 }
+    }
 }
 
 /// A walk under way.
@@ -59,6 +79,8 @@ pub(crate) struct Walk<'a> {
     depth: u32,
     /// How walks are aimed at small mirrors from this sensor.
     aim: Option<&'a Aim<'a>>,
+    /// Walks from emitters that a walk from a sensor is joined to.
+    partners: Option<Partners<'a>>,
     role: Role<'a>,
     /// Where a walk from a sensor was mirrored at its first vertex, which is followed when the rest of it has ended.
     branch: Option<Branch>,
@@ -118,6 +140,7 @@ impl<'a> Walk<'a> {
             direction: start.direction,
             depth: 0,
             aim: None,
+            partners: None,
             role: Role::Launched(Launched::new(start)),
             branch: None,
             truncated: false,
@@ -131,6 +154,7 @@ impl<'a> Walk<'a> {
         uniforms: Uniforms,
         receiver: &Receiver,
         aim: Option<&'a Aim<'a>>,
+        partners: Option<Partners<'a>>,
     ) -> Self {
         let Receiver { origin, normal, .. } = *receiver;
         let (direction, lookout) = if receiver.is_irradiance() {
@@ -155,6 +179,7 @@ impl<'a> Walk<'a> {
             direction,
             depth: 0,
             aim,
+            partners,
             role: Role::Looking(lookout),
             branch: None,
             truncated: false,
@@ -180,6 +205,7 @@ impl<'a> Walk<'a> {
             direction,
             depth: 0,
             aim: Some(aim),
+            partners: None,
             role: Role::Aimed(Aimed {
                 triangle,
                 by_chance: cos / PI,
@@ -219,12 +245,7 @@ impl<'a> Walk<'a> {
     /// Appends the next vertices to `path`; false once the walk has ended.
     pub(crate) fn advance(&mut self, path: &mut Path<'a>) -> bool {
         while path.vertices.len() < PIECE {
-            let Some(vertex) = self.next_vertex(path) else {
-                return false;
-            };
-            let ended = vertex.event == Event::Absorbed;
-            path.vertices.push(vertex);
-            if ended {
+            if matches!(self.push_vertex(path), None | Some(Event::Absorbed)) {
                 return false;
             }
         }
@@ -242,7 +263,8 @@ impl<'a> Walk<'a> {
         Some(vertex)
     }
 
-    fn next_vertex(&mut self, path: &mut Path<'a>) -> Option<Vertex> {
+    /// Appends the next vertex; `None` where there is none.
+    fn push_vertex(&mut self, path: &mut Path<'a>) -> Option<Event> {
         if self.depth == LONGEST {
             self.truncated = true;
             return None;
@@ -273,6 +295,9 @@ impl<'a> Walk<'a> {
             matrix: Reflection::NONE,
             emission,
             connections: 0..0,
+            bridges: 0..0,
+            lit: 0..0,
+            diffuse: 0.0,
             event: Event::Absorbed,
             probability: 1.0,
             flat: meeting.facet.is_some(),
@@ -280,17 +305,27 @@ impl<'a> Walk<'a> {
             rival: Rival::default(),
         };
         if vertex.black {
-            return Some(vertex);
+            path.vertices.push(vertex);
+            return Some(Event::Absorbed);
         }
         let (mirror, through) = meeting.matrices();
         let mut odds = meeting.odds(&mirror, &through);
         match &mut self.role {
             Role::Aimed(_) => odds = odds.of_mirrors(self.depth == 1),
-            Role::Launched(launched) => launched.go(hit.distance),
-            Role::Looking(lookout) => lookout.go(hit.distance),
+            Role::Launched(launched) => {
+                launched.go(hit.distance);
+                odds.diffuse *= self.techniques.launched(meeting.cover);
+            }
+            Role::Looking(lookout) => {
+                lookout.go(hit.distance);
+                if lookout.is_sensor() {
+                    odds.diffuse *= self.techniques.onward();
+                }
+            }
         }
+        vertex.diffuse = odds.diffuse;
         if odds.diffuse > 0.0 && meeting.cover.scatters() {
-            self.join(path, &mut vertex, &meeting, odds.diffuse);
+            self.join(path, &mut vertex, &meeting);
         }
         let [lobe, u, v, split] = self.uniforms.at(self.depth, self.role.scattering());
         self.origin = vertex.position;
@@ -307,6 +342,8 @@ impl<'a> Walk<'a> {
                     matrix: mirror,
                     emission: 0.0,
                     connections: 0..0,
+                    bridges: 0..0,
+                    lit: 0..0,
                     event: Event::Mirror,
                     probability,
                     ..vertex
@@ -319,16 +356,19 @@ impl<'a> Walk<'a> {
             vertex.event = Event::Diffuse;
             vertex.probability = odds.diffuse;
             self.direction = cosine_weighted(normal, [u, v]);
-            let out = bound(&meeting, self.direction);
+            let out = self.reverse(&meeting, self.direction);
             let viewer = Viewer {
                 point: vertex.position,
                 normal,
                 sensor: false,
             };
-            let local = self.techniques.local;
+            let techniques = self.techniques;
             match &mut self.role {
                 Role::Aimed(_) => {}
-                Role::Launched(launched) => launched.scatter(vertex.rival, odds.diffuse, out),
+                Role::Launched(launched) => {
+                    let cos = self.direction.dot(normal);
+                    launched.scatter(vertex.rival, cos, odds.diffuse, out);
+                }
                 Role::Looking(lookout) => {
                     lookout.scatter(
                         viewer,
@@ -336,7 +376,7 @@ impl<'a> Walk<'a> {
                         self.direction,
                         odds.diffuse,
                         out,
-                        local,
+                        techniques,
                     );
                 }
             }
@@ -357,16 +397,18 @@ impl<'a> Walk<'a> {
             self.origin = hit.position - off;
             match &mut self.role {
                 Role::Aimed(_) => {}
-                Role::Launched(launched) => launched.chain.odds *= odds.through,
-                Role::Looking(lookout) => lookout.chain.odds *= odds.through,
+                Role::Launched(launched) => launched.chain.pass(odds.through),
+                Role::Looking(lookout) => lookout.chain.pass(odds.through),
             }
         }
         vertex.onward = self.direction;
-        Some(vertex)
+        let event = vertex.event;
+        path.vertices.push(vertex);
+        Some(event)
     }
 
     /// What a scattering vertex sees, or what competes with joining it to a sensor.
-    fn join(&self, path: &mut Path<'a>, vertex: &mut Vertex, meeting: &Meeting, diffuse: f64) {
+    fn join(&self, path: &mut Path<'a>, vertex: &mut Vertex, meeting: &Meeting) {
         let viewer = Viewer {
             point: vertex.position,
             normal: vertex.normal,
@@ -381,18 +423,106 @@ impl<'a> Walk<'a> {
             Role::Looking(lookout) => {
                 let first = path.connections.len();
                 let cos = meeting.angle.0;
-                let local = self.techniques.local;
-                let coupling = |toward: DVec3| lookout.coupling(cos, bound(meeting, toward), local);
+                let coupling = |toward: DVec3| {
+                    lookout.coupling(cos, self.reverse(meeting, toward), self.techniques)
+                };
                 let look = Look {
                     viewer,
                     choice: Choice::All,
                     known: Seen::default(),
-                    diffuse,
+                    diffuse: vertex.diffuse,
                 };
                 self.connect(path, &look, &coupling);
                 vertex.connections = first..path.connections.len();
+                if lookout.is_sensor()
+                    && let Some(partners) = self.partners
+                {
+                    let joined = lookout.joined(cos, 1.0, self.techniques);
+                    self.bridge(path, vertex, partners, joined);
+                }
             }
         }
+    }
+
+    /// Joins the point where the walk first scatters to walks from the emitters; the density `joined` is that of walks from
+    /// emitters that are joined to the sensor from there.
+    fn bridge(
+        &self,
+        path: &mut Path<'a>,
+        vertex: &mut Vertex,
+        partners: Partners<'a>,
+        joined: f64,
+    ) {
+        let chance = bridge::chance(self.depth);
+        let uniforms = || self.uniforms.at(self.depth, Purpose::Bridge);
+        if chance < 1.0 && uniforms()[0] >= chance {
+            return;
+        }
+        let Medium {
+            surfaces, covers, ..
+        } = self.medium;
+        let abutment = Abutment {
+            position: vertex.position,
+            normal: vertex.normal,
+            cell: surfaces.cell(vertex.position),
+            onward: vertex.diffuse,
+            joined,
+            walks: self.techniques.bridged,
+        };
+        let share = 1.0 / (chance * partners.walks as f64);
+        let polarises = covers[vertex.material as usize].polarises_scattering();
+        let (first, lit) = (path.bridges.len(), path.lit.len());
+        path.lit.resize(lit + partners.width, 0.0);
+        vertex.lit = lit..path.lit.len();
+        if !polarises && abutment.cell.is_some() && partners.cell == abutment.cell {
+            let lit = &mut path.lit[lit..];
+            abutment.add_all(&partners, lit);
+            for value in lit {
+                *value *= share;
+            }
+            return;
+        }
+        let mut candidates = std::mem::take(&mut path.candidates);
+        candidates.clear();
+        let mut add = |landing: usize, weight: f64| {
+            let (from, fluxes) = (&partners.landings[landing], partners.fluxes(landing));
+            if polarises || from.polarises {
+                path.bridges.push(Bridge {
+                    from,
+                    fluxes,
+                    toward: (from.position - vertex.position).normalize(),
+                    weight,
+                });
+            } else {
+                for (lit, flux) in path.lit[lit..].iter_mut().zip(fluxes) {
+                    *lit += flux * weight;
+                }
+            }
+        };
+        for (index, landing) in partners.landings.iter().enumerate() {
+            let cover = &covers[landing.material as usize];
+            let weight = share
+                * abutment.weight(landing, |direction| {
+                    let (cos, sin2) = malus_optics::angle_of_incidence(direction, landing.normal);
+                    cover.diffuse(cos, sin2)
+                });
+            if weight <= 0.0 {
+                continue;
+            }
+            if abutment.cell.is_some() && landing.cell == abutment.cell {
+                add(index, weight);
+            } else {
+                candidates.push(index, weight, landing.most);
+            }
+        }
+        if !candidates.is_empty()
+            && let Some((landing, weight)) = candidates.choose(uniforms()[1])
+            && surfaces.visible(vertex.position, partners.landings[landing].position)
+        {
+            add(landing, weight);
+        }
+        path.candidates = candidates;
+        vertex.bridges = first..path.bridges.len();
     }
 
     /// Weight of meeting an emitter by chance against the other techniques (balance heuristic; Veach & Guibas 1995).
@@ -411,6 +541,17 @@ impl<'a> Walk<'a> {
                 meeting.angle.0,
                 emission.exitance,
             ),
+        }
+    }
+}
+
+impl Walk<'_> {
+    /// Probability with which a walk of the other kind would be scattered.
+    fn reverse(&self, meeting: &Meeting, direction: DVec3) -> f64 {
+        let bound = bound(meeting, direction);
+        match self.role {
+            Role::Launched(_) => bound,
+            _ => bound * self.techniques.launched(meeting.cover),
         }
     }
 }

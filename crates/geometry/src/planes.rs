@@ -48,6 +48,11 @@ impl Planes {
         }
     }
 
+    /// Whether there are few enough of them.
+    pub fn are_known(&self) -> bool {
+        !self.planes.is_empty()
+    }
+
     /// On which side of each plane a point (in m) lies, one bit a plane; `None` where it is too near to one, or where the
     /// planes are not known.
     #[inline]

@@ -159,6 +159,20 @@ impl Surfaces {
         )
     }
 
+    /// Whether points have cells at all.
+    #[must_use]
+    pub fn has_cells(&self) -> bool {
+        self.planes.are_known()
+    }
+
+    /// In which cell of the planes that all surfaces lie in a point (in m) is: points of one cell see each other, all of an
+    /// empty convex room for one. `None` on a plane, and where there are too many of them.
+    #[must_use]
+    #[inline]
+    pub fn cell(&self, point: DVec3) -> Option<u32> {
+        self.planes.sides(point)
+    }
+
     /// Points (in m) with normals, made ready for [`visible_from`](Self::visible_from); one whose normal is zero is seen
     /// from nowhere.
     ///

@@ -1,9 +1,9 @@
 //! Light along a walk from a sensor.
 
 use super::chain::Chain;
-use super::{emitted, passed_at};
+use super::{bridged, emitted, passed_at};
 use crate::gather::Part;
-use crate::path::{Connection, Event, Path};
+use crate::path::{Connection, Event, Path, Vertex};
 use crate::receiver::Receiver;
 use crate::variation::Variation;
 use malus_optics::{Sensor, Stokes};
@@ -12,6 +12,8 @@ use malus_optics::{Sensor, Stokes};
 #[derive(Debug)]
 pub(crate) struct Gathering<'r, const N: usize> {
     receiver: &'r Receiver,
+    /// Its place among the fluxes that walks from the emitters bring.
+    place: usize,
     /// Divided by the probability of every event on the way: apart, the two would leave the range of numbers on a long
     /// walk, one to either side.
     chain: Chain<N>,
@@ -21,11 +23,12 @@ pub(crate) struct Gathering<'r, const N: usize> {
 }
 
 impl<'r, const N: usize> Gathering<'r, N> {
-    /// Nothing read yet.
+    /// Nothing read yet; `place` is its own among the fluxes that walks from the emitters bring.
     #[must_use]
-    pub(crate) fn new(receiver: &'r Receiver) -> Self {
+    pub(crate) fn new(receiver: &'r Receiver, place: usize) -> Self {
         Self {
             receiver,
+            place,
             chain: Chain::ToSensor(None),
             sum: Stokes::unpolarised(0.0),
             found: [0.0; 2],
@@ -86,6 +89,7 @@ impl<'r, const N: usize> Gathering<'r, N> {
                 let weight = scattering * self.receiver.per_exitance;
                 self.connect(path, connection, chain, weight, variation);
             }
+            self.bridge(path, vertex, variation);
             match vertex.event {
                 Event::Absorbed => return,
                 Event::Diffuse => {
@@ -101,6 +105,35 @@ impl<'r, const N: usize> Gathering<'r, N> {
                     self.chain = self.chain.extended(self.receiver, &step);
                 }
             }
+        }
+    }
+
+    /// Adds the light of walks from the emitters that a vertex is joined to.
+    fn bridge(&mut self, path: &Path, vertex: &Vertex, variation: &Variation) {
+        let optics = &variation.materials[vertex.material as usize].optics;
+        let strength = optics.scattering() * self.receiver.per_exitance;
+        // What comes unpolarised is the same from everywhere to a surface that does not ask for more.
+        let mut even = path.lit[vertex.lit.clone()]
+            .get(self.place)
+            .copied()
+            .unwrap_or(0.0);
+        for bridge in &path.bridges[vertex.bridges.clone()] {
+            let flux = bridge.fluxes[self.place] * bridge.weight;
+            let from = &variation.materials[bridge.from.material as usize].optics;
+            let light = bridged(from, bridge);
+            if light.is_none() && !optics.polarises_scattering() {
+                even += flux;
+                continue;
+            }
+            let toward = bridge.toward;
+            let chain = self.chain.behind(self.receiver, optics, vertex, toward);
+            self.sum += chain.pass(self.receiver, -toward, light) * (strength * flux);
+        }
+        if even > 0.0 {
+            let chain = self
+                .chain
+                .behind(self.receiver, optics, vertex, vertex.normal);
+            self.sum += chain.pass(self.receiver, -vertex.normal, None) * (strength * even);
         }
     }
 

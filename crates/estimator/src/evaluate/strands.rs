@@ -5,10 +5,10 @@
 //! them, so many variants cost little more than one.
 
 use super::chain::Chain;
-use super::{emitted, passed_at};
+use super::{bridged, emitted, passed_at};
 use crate::emitters::state_of;
 use crate::gather::Part;
-use crate::path::{Connection, Event, Path, Vertex};
+use crate::path::{Bridge, Connection, Event, Path, Vertex};
 use crate::receiver::Receiver;
 use crate::spread::{Spread, Surface};
 use malus_optics::{Sensor, Stokes};
@@ -18,6 +18,8 @@ use malus_optics::{Sensor, Stokes};
 pub(crate) struct Strands<'r, const N: usize> {
     receiver: &'r Receiver,
     spread: &'r Spread,
+    /// The first of its places among the fluxes that walks from the emitters bring.
+    first: usize,
     strands: Vec<Strand<N>>,
     reading: Vec<Reading<N>>,
 }
@@ -44,8 +46,8 @@ struct Member {
 }
 
 impl<'r, const N: usize> Strands<'r, N> {
-    /// Nothing read yet.
-    pub(crate) fn new(receiver: &'r Receiver, spread: &'r Spread) -> Self {
+    /// Nothing read yet; `first` is the first of its places among the fluxes that walks from the emitters bring.
+    pub(crate) fn new(receiver: &'r Receiver, spread: &'r Spread, first: usize) -> Self {
         let nothing = Reading {
             sum: Stokes::unpolarised(0.0),
             found: [0.0; 2],
@@ -53,6 +55,7 @@ impl<'r, const N: usize> Strands<'r, N> {
         Self {
             receiver,
             spread,
+            first,
             strands: Vec::new(),
             reading: vec![nothing; spread.count()],
         }
@@ -125,6 +128,16 @@ impl<'r, const N: usize> Strands<'r, N> {
                 };
                 let members: Vec<Member> = strand.members.iter().map(scattered).collect();
                 self.connect(path, connection, chain, &members);
+            }
+        }
+        if let lit @ [_, ..] = &path.lit[vertex.lit.clone()] {
+            for strand in &strands {
+                self.light(&lit[self.first..], vertex, surface, strand);
+            }
+        }
+        for bridge in &path.bridges[vertex.bridges.clone()] {
+            for strand in &strands {
+                self.bridge(bridge, vertex, surface, strand);
             }
         }
         self.strands = strands;
@@ -214,6 +227,36 @@ impl<'r, const N: usize> Strands<'r, N> {
                 reading.sum += read;
                 false
             });
+        }
+    }
+
+    /// Adds the unpolarised light that walks from the emitters bring to a vertex, in every variant.
+    fn light(&mut self, lit: &[f64], vertex: &Vertex, surface: &Surface, strand: &Strand<N>) {
+        let optics = surface.kind(strand.members[0].variant);
+        let chain = strand
+            .chain
+            .behind(self.receiver, optics, vertex, vertex.normal);
+        let read = chain.pass(self.receiver, -vertex.normal, None);
+        for member in &strand.members {
+            let weight = member.weight * surface.scattering[member.variant] * lit[member.variant];
+            self.reading[member.variant].sum += read * (weight * self.receiver.per_exitance);
+        }
+    }
+
+    /// Adds the light of a walk from an emitter that a vertex is joined to.
+    fn bridge(&mut self, bridge: &Bridge, vertex: &Vertex, surface: &Surface, strand: &Strand<N>) {
+        let from = self.spread.surface(bridge.from.material);
+        let optics = surface.kind(strand.members[0].variant);
+        let chain = strand
+            .chain
+            .behind(self.receiver, optics, vertex, bridge.toward);
+        for member in &strand.members {
+            let light = bridged(from.kind(member.variant), bridge);
+            let flux = bridge.fluxes[self.first + member.variant] * bridge.weight;
+            let weight = member.weight * surface.scattering[member.variant] * flux;
+            let read = chain.pass(self.receiver, -bridge.toward, light)
+                * (weight * self.receiver.per_exitance);
+            self.reading[member.variant].sum += read;
         }
     }
 

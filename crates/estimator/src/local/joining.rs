@@ -1,6 +1,7 @@
 //! Joining the vertices of walks from the emitters to sensors.
 
 use super::Sensors;
+use crate::bridge::Landings;
 use crate::emitters::Start;
 use crate::evaluate::joined;
 use crate::medium::{Medium, Step};
@@ -91,6 +92,7 @@ impl Joining<'_> {
         medium: Medium<'a>,
         start: &Start<'a>,
         width: usize,
+        landings: &mut Landings,
         mut evaluate: impl FnMut(&Path<'a>, &mut [f64]),
         mut add: impl FnMut(usize, &[f64], &Arrival),
     ) -> Effort {
@@ -99,6 +101,7 @@ impl Joining<'_> {
         let mut path = Path::default();
         let mut fluxes = Vec::new();
         let mut depth = 0;
+        landings.start();
         loop {
             path.clear();
             let more = walk.advance(&mut path);
@@ -109,6 +112,11 @@ impl Joining<'_> {
             for (vertex, fluxes) in path.vertices.iter().zip(fluxes.chunks(width)) {
                 depth += 1;
                 if fluxes.iter().any(|&f| f > 0.0) {
+                    let cover = &medium.covers[vertex.material as usize];
+                    let (cos, sin2) = angle_of_incidence(vertex.normal, vertex.normal);
+                    let scattering = (cover.polarises_scattering(), cover.diffuse(cos, sin2));
+                    let place = (self.uniforms, depth);
+                    landings.push(medium.surfaces, vertex, scattering, fluxes, place);
                     effort.joins += self.sensors.receivers.len() as u64;
                     self.join(&medium, vertex, depth, |sensor, arrival| {
                         add(sensor, fluxes, arrival);
@@ -129,6 +137,9 @@ impl Joining<'_> {
         depth: u32,
         mut add: impl FnMut(usize, &Arrival),
     ) {
+        if self.sensors.receivers.is_empty() {
+            return;
+        }
         let cover = &medium.covers[vertex.material as usize];
         let polarises = cover.polarises_scattering();
         let diffuse = |direction| {
@@ -163,7 +174,7 @@ impl Joining<'_> {
                     let coupling = way.coupling * way.odds;
                     weight *= vertex.rival.weight(
                         coupling,
-                        diffuse,
+                        diffuse * self.techniques.onward(),
                         self.sensors.allocation.rivalry(sensor),
                     );
                 }
