@@ -509,7 +509,8 @@ impl<'a> Walk<'a> {
             if weight <= 0.0 {
                 continue;
             }
-            if abutment.cell.is_some() && landing.cell == abutment.cell {
+            let seen = abutment.cell.is_some() && landing.cell == abutment.cell;
+            if seen && !polarises && !landing.polarises {
                 add(index, weight);
             } else {
                 candidates.push(index, weight, landing.most);
