@@ -16,7 +16,8 @@ use std::ops::Range;
 const WALKS_IN_CELLS: u64 = 16;
 const WALKS: u64 = 8;
 
-/// How much less often than by itself a walk from a sensor goes on where it has been joined to walks from the emitters.
+/// How often, of the times that it would otherwise, a walk from a sensor goes on where it has been joined to walks from the
+/// emitters.
 pub(crate) const ONWARD: f64 = 0.5;
 
 /// The least number of walks from the emitters in a block.
@@ -40,8 +41,8 @@ pub(crate) fn walks(surfaces: &Surfaces) -> u64 {
     }
 }
 
-/// The walks from the emitters, of which this is one, that a walk from a sensor is joined to: so many, but blocks of the first few are
-/// smaller, so that hardly a walk is taken for the sake of bridges alone.
+/// The walks from the emitters, `partner` among them, that one from a sensor is joined to: so many, but fewer of the first, so
+/// that hardly a walk is taken for the sake of bridges alone.
 pub(crate) fn block(partner: u64, walks: u64) -> Range<u64> {
     let size = (1 << partner.max(FEWEST).ilog2()).min(walks);
     let first = partner - partner % size;
@@ -89,8 +90,8 @@ pub(crate) struct Abutment {
 }
 
 impl Abutment {
-    /// Irradiance for one unit of flux that a landing scatters, unless something is in the way, weighted against other techniques
-    /// (in 1/m²). `diffuse` says with which probability a walk that came against a direction would be scattered there.
+    /// Irradiance for one unit of flux that a landing scatters, unless something is in the way, weighted against other
+    /// techniques, in 1/m². `diffuse` says with which probability a walk that comes along a direction is scattered there.
     #[inline]
     pub(crate) fn weight(&self, landing: &Landing, diffuse: impl Fn(DVec3) -> f64) -> f64 {
         let searching = match landing.polarises {
@@ -280,11 +281,56 @@ impl Candidates {
         });
     }
 
-    /// Chooses one by a uniform number; its weight is divided by the probability of that.
+    /// Chooses one by a uniform number, and gives its weight over the probability of that.
     pub(crate) fn choose(&self, uniform: f64) -> Option<(usize, f64)> {
         let total = self.0.last()?.until;
         let chosen = self.0.partition_point(|it| it.until <= uniform * total);
         let Candidate { landing, most, .. } = *self.0.get(chosen)?;
         Some((landing, total / most))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_part_the_walks() {
+        for walks in [WALKS, WALKS_IN_CELLS] {
+            let mut end = 0;
+            for partner in 0..1000 {
+                let block = block(partner, walks);
+                assert!(block.contains(&partner), "{partner} in {block:?}");
+                assert!(block.start == end || block.end == end, "{block:?} {end}");
+                assert!((FEWEST..=walks).contains(&(block.end - block.start)));
+                end = block.end;
+            }
+            // A run that ends at a first look, of 2, 4, 8 or 16 walks, has launched hardly more.
+            for looked in [4, 8, 16] {
+                assert_eq!(block(looked - 1, walks).end, looked);
+            }
+        }
+    }
+
+    #[test]
+    fn candidates_are_chosen_without_bias() {
+        // Weights for a unit of flux, and fluxes.
+        let given = [(2.0, 0.5), (1e-6, 3.0), (0.25, 8.0), (7.0, 1e-3)];
+        let mut candidates = Candidates::default();
+        assert_eq!(candidates.choose(0.5), None);
+        for (index, (weight, flux)) in given.into_iter().enumerate() {
+            candidates.push(index, weight, flux);
+        }
+        const DRAWS: u32 = 1 << 20;
+        let mut brought = [0.0; 4];
+        for draw in 0..DRAWS {
+            let uniform = (f64::from(draw) + 0.5) / f64::from(DRAWS);
+            let (index, weight) = candidates.choose(uniform).unwrap();
+            brought[index] += weight * given[index].1 / f64::from(DRAWS);
+        }
+        // Every draw brings all light, so one too many or too few is an error of 3.007/2²⁰.
+        for (brought, (weight, flux)) in brought.into_iter().zip(given) {
+            assert!((brought - weight * flux).abs() < 3.1 / f64::from(DRAWS));
+        }
     }
 }

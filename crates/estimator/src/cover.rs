@@ -63,8 +63,8 @@ pub(crate) struct Cover {
     room: f64,
     /// Of more than one: the greatest mirror-like reflectance at cosines k/STEPS.
     mirror: Vec<f64>,
-    /// By how much likelier a walk from an emitter scatters than one from a sensor.
-    pub launched: f64,
+    /// See [`launched`](Self::launched).
+    launched: f64,
 }
 
 impl Cover {
@@ -136,6 +136,13 @@ impl Cover {
             [alone] => alone.diffuse_bound(cos, sin2),
             _ => self.room * self.scattered(cos, sin2),
         }
+    }
+
+    /// By how much likelier a walk from an emitter scatters than one from a sensor, where walks from sensors are joined to
+    /// it: so likely as the geometric mean of what is scattered and of all that mirrors leave.
+    #[inline]
+    pub(crate) fn launched(&self) -> f64 {
+        self.launched
     }
 
     /// Greatest mirror-like reflectance at an angle, for any state of light.

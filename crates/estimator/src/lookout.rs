@@ -108,9 +108,9 @@ pub(crate) struct Lookout {
     cos: f64,
     /// See [`Lookout::coupling`].
     local: f64,
-    /// The same for walks from emitters that are joined to this walk where it first scattered.
+    /// See [`Lookout::crossed`].
     bridged: f64,
-    /// Whether this is where it did.
+    /// Whether the walk has first scattered here.
     bridge: bool,
     /// How often a walk that is aimed at small mirrors goes the way of this one, for one that is not.
     aimed: f64,

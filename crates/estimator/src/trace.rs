@@ -4,9 +4,11 @@
 //! the diffuse lobe, a · max(Rs, Rp) for the mirror-like one. So the same walk serves every number of
 //! components and the scalar model beside the polarised one, and no weight can grow along a chain.
 
+mod cross;
 mod look;
 
-use crate::bridge::{self, Abutment, ONWARD, Partners};
+use crate::bridge::{ONWARD, Partners};
+use crate::cover::Cover;
 use crate::direction::cosine_weighted;
 use crate::emitters::{Choice, Start};
 use crate::glints::Aim;
@@ -14,7 +16,7 @@ use crate::launched::{Launched, Rival};
 use crate::lookout::Lookout;
 use crate::medium::{Medium, Meeting};
 use crate::mirrors::Viewer;
-use crate::path::{Bridge, Event, Path, Vertex};
+use crate::path::{Event, Path, Vertex};
 use crate::random::{Purpose, Uniforms};
 use crate::receiver::Receiver;
 use crate::sight::Seen;
@@ -39,7 +41,7 @@ pub(crate) struct Techniques {
     pub local: f64,
     /// Walks from emitters that a walk from a sensor is joined to where it first scatters; 0: none.
     pub bridged: f64,
-    /// The same, as they are counted: a block of walks.
+    /// The same as a number of walks; the other is what they count for in the weights.
     pub block: u64,
     /// Walks are taken from the sensors.
     pub gather: bool,
@@ -55,15 +57,16 @@ impl Techniques {
         gather: false,
     };
 
-    fn launched(self, cover: &crate::cover::Cover) -> f64 {
+    /// By how much likelier than one from a sensor a walk from an emitter is scattered: one such walk serves many others.
+    fn launched(self, cover: &Cover) -> f64 {
         if self.bridged > 0.0 {
-            cover.launched
+            cover.launched()
         } else {
             1.0
         }
     }
 
-    /// How much less often than by itself a walk from a sensor goes on where it first scatters.
+    /// How often, of the times that it would otherwise, a walk from a sensor goes on where it first scatters.
     pub(crate) fn onward(self) -> f64 {
         if self.bridged > 0.0 { ONWARD } else { 1.0 }
     }
@@ -438,92 +441,19 @@ impl<'a> Walk<'a> {
                     && let Some(partners) = self.partners
                 {
                     let joined = lookout.joined(cos, 1.0, self.techniques);
-                    self.bridge(path, vertex, partners, joined);
+                    self.cross(path, vertex, partners, joined);
                 }
             }
         }
     }
 
-    /// Joins the point where the walk first scatters to walks from the emitters; the density `joined` is that of walks from
-    /// emitters that are joined to the sensor from there.
-    fn bridge(
-        &self,
-        path: &mut Path<'a>,
-        vertex: &mut Vertex,
-        partners: Partners<'a>,
-        joined: f64,
-    ) {
-        let chance = bridge::chance(self.depth);
-        let uniforms = || self.uniforms.at(self.depth, Purpose::Bridge);
-        if chance < 1.0 && uniforms()[0] >= chance {
-            return;
+    /// Probability with which a walk of the other kind that came from `direction` would be scattered where this one was met.
+    fn reverse(&self, meeting: &Meeting, direction: DVec3) -> f64 {
+        let bound = bound(meeting, direction);
+        match self.role {
+            Role::Launched(_) => bound,
+            _ => bound * self.techniques.launched(meeting.cover),
         }
-        let Medium {
-            surfaces, covers, ..
-        } = self.medium;
-        let abutment = Abutment {
-            position: vertex.position,
-            normal: vertex.normal,
-            cell: surfaces.cell(vertex.position),
-            onward: vertex.diffuse,
-            joined,
-            walks: self.techniques.bridged,
-        };
-        let share = 1.0 / (chance * partners.walks as f64);
-        let polarises = covers[vertex.material as usize].polarises_scattering();
-        let (first, lit) = (path.bridges.len(), path.lit.len());
-        path.lit.resize(lit + partners.width, 0.0);
-        vertex.lit = lit..path.lit.len();
-        if !polarises && abutment.cell.is_some() && partners.cell == abutment.cell {
-            let lit = &mut path.lit[lit..];
-            abutment.add_all(&partners, lit);
-            for value in lit {
-                *value *= share;
-            }
-            return;
-        }
-        let mut candidates = std::mem::take(&mut path.candidates);
-        candidates.clear();
-        let mut add = |landing: usize, weight: f64| {
-            let (from, fluxes) = (&partners.landings[landing], partners.fluxes(landing));
-            if polarises || from.polarises {
-                path.bridges.push(Bridge {
-                    from,
-                    fluxes,
-                    toward: (from.position - vertex.position).normalize(),
-                    weight,
-                });
-            } else {
-                for (lit, flux) in path.lit[lit..].iter_mut().zip(fluxes) {
-                    *lit += flux * weight;
-                }
-            }
-        };
-        for (index, landing) in partners.landings.iter().enumerate() {
-            let cover = &covers[landing.material as usize];
-            let weight = share
-                * abutment.weight(landing, |direction| {
-                    let (cos, sin2) = malus_optics::angle_of_incidence(direction, landing.normal);
-                    cover.diffuse(cos, sin2)
-                });
-            if weight <= 0.0 {
-                continue;
-            }
-            let seen = abutment.cell.is_some() && landing.cell == abutment.cell;
-            if seen && !polarises && !landing.polarises {
-                add(index, weight);
-            } else {
-                candidates.push(index, weight, landing.most);
-            }
-        }
-        if !candidates.is_empty()
-            && let Some((landing, weight)) = candidates.choose(uniforms()[1])
-            && surfaces.visible(vertex.position, partners.landings[landing].position)
-        {
-            add(landing, weight);
-        }
-        path.candidates = candidates;
-        vertex.bridges = first..path.bridges.len();
     }
 
     /// Weight of meeting an emitter by chance against the other techniques (balance heuristic; Veach & Guibas 1995).
@@ -542,17 +472,6 @@ impl<'a> Walk<'a> {
                 meeting.angle.0,
                 emission.exitance,
             ),
-        }
-    }
-}
-
-impl Walk<'_> {
-    /// Probability with which a walk of the other kind would be scattered.
-    fn reverse(&self, meeting: &Meeting, direction: DVec3) -> f64 {
-        let bound = bound(meeting, direction);
-        match self.role {
-            Role::Launched(_) => bound,
-            _ => bound * self.techniques.launched(meeting.cover),
         }
     }
 }
