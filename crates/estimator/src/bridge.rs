@@ -5,6 +5,7 @@
 //! surface is lit by walks that have been taken already (a connection of bidirectional path tracing, Veach & Guibas 1995).
 
 use crate::launched::Rival;
+use crate::medium::Medium;
 use crate::path::Vertex;
 use crate::random::{Purpose, Uniforms};
 use glam::DVec3;
@@ -160,11 +161,11 @@ impl Landings {
     /// Its next vertex that scatters, where it has met `depth` surfaces.
     pub(crate) fn push(
         &mut self,
-        surfaces: &Surfaces,
+        medium: &Medium,
         vertex: &Vertex,
-        (polarises, diffuse): (bool, f64),
         fluxes: &[f64],
-        (uniforms, depth): (Uniforms, u32),
+        uniforms: Uniforms,
+        depth: u32,
     ) {
         let Some(walk) = self.walks.last_mut() else {
             return;
@@ -179,7 +180,9 @@ impl Landings {
         }
         let before = self.fluxes.len();
         self.width = fluxes.len();
-        let cell = surfaces.cell(vertex.position);
+        let cover = &medium.covers[vertex.material as usize];
+        let polarises = cover.polarises_scattering();
+        let cell = medium.surfaces.cell(vertex.position);
         let common = self.landings.first().map_or(cell, |it| it.cell);
         self.uneven |= polarises || cell.is_none() || cell != common;
         self.fluxes.extend(fluxes.iter().map(|flux| flux / chance));
@@ -192,7 +195,7 @@ impl Landings {
             most: self.fluxes[before..].iter().copied().fold(0.0, f64::max),
             reverse: vertex.diffuse,
             rival: vertex.rival,
-            searching: vertex.rival.searching(diffuse),
+            searching: vertex.rival.searching(cover.diffuse(1.0, 0.0)),
         });
         walk.end += 1;
     }

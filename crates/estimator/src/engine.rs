@@ -16,8 +16,8 @@ use std::ops::Range;
 /// Walks that a step takes in all, so that a watcher is asked several times a second.
 const STEP: u64 = 1 << 14;
 
-/// How much longer a step may be to take whole blocks of walks.
-const LONG: u64 = 8;
+/// How many it may take to end with a block of those that walks from sensors are joined to.
+const LONGEST_STEP: u64 = 1 << 17;
 
 /// Sensors of one replica that one task gathers at.
 const TASK: usize = 16;
@@ -71,12 +71,14 @@ impl<const N: usize> Engine<'_, N> {
             Some(_) => 1,
             None => self.receivers.len().max(1) as u64,
         };
-        let step = (STEP / (u64::from(REPLICAS) * joined)).max(1);
-        // Whole blocks, unless one alone is much longer.
+        let joins = u64::from(REPLICAS) * joined;
+        let step = (STEP / joins).max(1);
+        // What is left of a block has to be launched again in the next step.
         let block = self.passes.techniques.block.max(1);
-        match step * LONG / block {
-            0 => step,
-            _ => step.next_multiple_of(block),
+        if block * joins <= LONGEST_STEP {
+            step.next_multiple_of(block)
+        } else {
+            step
         }
     }
 

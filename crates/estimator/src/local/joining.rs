@@ -112,11 +112,9 @@ impl Joining<'_> {
             for (vertex, fluxes) in path.vertices.iter().zip(fluxes.chunks(width)) {
                 depth += 1;
                 if fluxes.iter().any(|&f| f > 0.0) {
-                    let cover = &medium.covers[vertex.material as usize];
-                    let (cos, sin2) = angle_of_incidence(vertex.normal, vertex.normal);
-                    let scattering = (cover.polarises_scattering(), cover.diffuse(cos, sin2));
-                    let place = (self.uniforms, depth);
-                    landings.push(medium.surfaces, vertex, scattering, fluxes, place);
+                    if self.techniques.bridged > 0.0 {
+                        landings.push(&medium, vertex, fluxes, self.uniforms, depth);
+                    }
                     effort.joins += self.sensors.receivers.len() as u64;
                     self.join(&medium, vertex, depth, |sensor, arrival| {
                         add(sensor, fluxes, arrival);
