@@ -68,7 +68,7 @@ pub enum Sharing<'a> {
 
 impl Sharing<'_> {
     /// How much a walk from the emitters counts for, beside the density of its points.
-    pub(crate) fn trust(self) -> f64 {
+    fn trust(self) -> f64 {
         match self {
             Self::Points => 1.0,
             Self::Differences => IN_DIFFERENCES,

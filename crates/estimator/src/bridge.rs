@@ -17,9 +17,8 @@ use std::ops::Range;
 const WALKS_IN_CELLS: u64 = 16;
 const WALKS: u64 = 8;
 
-/// How often, of the times that it would otherwise, a walk from a sensor goes on where it has been joined to walks from the
-/// emitters.
-pub(crate) const ONWARD: f64 = 0.5;
+/// How much of what such walks bring is chance that the walks from one sensor share, as they are joined to the same ones.
+const SHARED: f64 = 0.5;
 
 /// The least number of walks from the emitters in a block.
 const FEWEST: u64 = 4;
@@ -40,6 +39,18 @@ pub(crate) fn walks(surfaces: &Surfaces) -> u64 {
         true => WALKS_IN_CELLS,
         false => WALKS,
     }
+}
+
+/// What a block of so many walks from the emitters, that a walk from a sensor is joined to, counts for in the weights where
+/// `launched` of them are taken for one from the sensor.
+///
+/// Where all walks from a sensor first scatter near one place, in a corner say, each is joined to about the same: then
+/// there is as much luck in all these bridges as in the walks from the emitters themselves.
+pub(crate) fn worth(block: u64, launched: f64) -> f64 {
+    if block == 0 {
+        return 0.0;
+    }
+    1.0 / (1.0 / block as f64 + SHARED / launched)
 }
 
 /// The walks from the emitters, `partner` among them, that one from a sensor is joined to: so many, but fewer of the first, so
@@ -65,6 +76,8 @@ pub(crate) struct Landing {
     pub polarises: bool,
     /// The greatest of its fluxes.
     pub most: f64,
+    /// The first of those in a row up to this one that lie in its cell and scatter evenly; none where it does not.
+    alike: usize,
     /// Probability with which the walk was scattered there.
     reverse: f64,
     /// What competes with joining it to a sensor.
@@ -145,8 +158,6 @@ pub(crate) struct Landings {
     landings: Vec<Landing>,
     /// Variants and models that share the walks.
     width: usize,
-    /// Whether some landing lies in another cell than the first, or in none, or polarises.
-    uneven: bool,
     /// The flux that each scatters, in every variant and model that shares the walks.
     fluxes: Vec<f64>,
 }
@@ -183,8 +194,14 @@ impl Landings {
         let cover = &medium.covers[vertex.material as usize];
         let polarises = cover.polarises_scattering();
         let cell = medium.surfaces.cell(vertex.position);
-        let common = self.landings.first().map_or(cell, |it| it.cell);
-        self.uneven |= polarises || cell.is_none() || cell != common;
+        let before_it = self.landings.last();
+        let alike = match cell {
+            Some(_) if !polarises => match before_it {
+                Some(last) if last.cell == cell && last.alike < usize::MAX => last.alike,
+                _ => self.landings.len(),
+            },
+            _ => usize::MAX,
+        };
         self.fluxes.extend(fluxes.iter().map(|flux| flux / chance));
         self.landings.push(Landing {
             material: vertex.material,
@@ -192,6 +209,7 @@ impl Landings {
             normal: vertex.normal,
             cell,
             polarises,
+            alike,
             most: self.fluxes[before..].iter().copied().fold(0.0, f64::max),
             reverse: vertex.diffuse,
             rival: vertex.rival,
@@ -233,13 +251,14 @@ impl<'a> Partners<'a> {
         let walks = &landings.walks[at(block.start)..at(block.end)];
         let range = walks[0].start..walks[walks.len() - 1].end;
         let width = landings.width;
-        let first = landings.landings.first();
+        let landed = &landings.landings[range.clone()];
+        let last = landed.last().filter(|it| it.alike <= range.start);
         Self {
             width,
-            cell: first.filter(|_| !landings.uneven).and_then(|it| it.cell),
+            cell: last.and_then(|it| it.cell),
             walks: walks.len(),
             fluxes: &landings.fluxes[range.start * width..range.end * width],
-            landings: &landings.landings[range],
+            landings: landed,
         }
     }
 

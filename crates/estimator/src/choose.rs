@@ -38,7 +38,7 @@ pub(crate) fn techniques(
             Techniques {
                 mirrored: true,
                 local: if joined { 1.0 } else { 0.0 },
-                bridged: block as f64,
+                bridged: 0.0,
                 block,
                 gather: true,
             },

@@ -104,7 +104,7 @@ impl Cover {
         if cover.even.is_some() && cover.scatters() && !pane {
             let scattered = cover.diffuse(1.0, 0.0);
             let left = 1.0 - cover.mirror_bound(0.0, 1.0).min(1.0 - scattered);
-            cover.launched = (left / scattered).sqrt();
+            cover.launched = left.sqrt() / scattered.sqrt();
         }
         cover
     }

@@ -17,7 +17,7 @@ use std::ops::Range;
 const STEP: u64 = 1 << 14;
 
 /// How many it may take to end with a block of those that walks from sensors are joined to.
-const LONGEST_STEP: u64 = 1 << 17;
+const LONGEST_STEP: u64 = 1 << 19;
 
 /// Sensors of one replica that one task gathers at.
 const TASK: usize = 16;
@@ -122,7 +122,7 @@ impl<const N: usize> Engine<'_, N> {
         let stream = Stream::new(self.seed, replica.id);
         // Walks from the sensors are joined to whole blocks of them.
         let mut whole = replica.points..until;
-        if self.passes.techniques.bridged > 0.0 && !whole.is_empty() {
+        if self.passes.techniques.block > 0 && !whole.is_empty() {
             whole = self.block(whole.start).start..self.block(whole.end - 1).end;
         }
         launches.first = whole.start;

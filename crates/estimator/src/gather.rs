@@ -1,7 +1,7 @@
 //! Walks from the sensors, against the light: at every vertex one emitter is looked at, straight and in mirrors, and
 //! emitters met by chance count where looking could not, or was less likely to, find them.
 
-use crate::bridge::{Launches, Partners};
+use crate::bridge::{self, Launches, Partners};
 use crate::evaluate::{Gathering, Strands};
 use crate::glints::Aim;
 use crate::medium::Medium;
@@ -46,6 +46,7 @@ pub(crate) fn gather<const N: usize>(
     } = observer;
     let techniques = Techniques {
         local: rivalry * passes.techniques.local,
+        bridged: bridge::worth(passes.techniques.block, rivalry),
         ..passes.techniques
     };
     let mut effort = Effort::default();
@@ -54,7 +55,7 @@ pub(crate) fn gather<const N: usize>(
     for index in range {
         let uniforms = stream.walk(index);
         let joined = |landings| {
-            let block = (techniques.bridged > 0.0).then(|| partners(index))?;
+            let block = (techniques.block > 0).then(|| partners(index))?;
             Some(Partners::new(landings, launches.first, &block))
         };
         let way = Way {

@@ -15,7 +15,7 @@ pub(crate) struct Rival {
     looked: f64,
     /// Walks from the sensor that meet the emitter by chance.
     met: f64,
-    /// Walks from the sensor that are joined to this one at its last diffuse event.
+    /// Walks from the sensor that are joined to this one at its last diffuse event, each to one.
     bridged: f64,
     /// Whether this is the first point that scatters.
     first: bool,
@@ -27,10 +27,11 @@ impl Rival {
     /// Weight of joining the point to a sensor by a way of the given coupling cos θ cos θ′/(π r²), in 1/m².
     ///
     /// A walk that came from the sensor would be scattered at the point with the probability `diffuse`, and there are
-    /// `walks` walks from emitters for one such walk.
+    /// `walks` walks from emitters for one such walk, which is joined to `bridged` of them itself.
     #[inline]
-    pub(crate) fn weight(&self, coupling: f64, diffuse: f64, walks: f64) -> f64 {
-        1.0 / (1.0 + coupling / walks * (self.searching(diffuse) + self.bridged))
+    pub(crate) fn weight(&self, coupling: f64, diffuse: f64, walks: f64, bridged: f64) -> f64 {
+        let rivals = self.searching(diffuse) + bridged * self.bridged;
+        1.0 / (1.0 + coupling / walks * rivals)
     }
 
     /// Walks from the sensor that find the emitter by themselves.
@@ -93,7 +94,7 @@ impl<'a> Launched<'a> {
     ) -> Rival {
         if let Some(left) = &self.left {
             let bridged = if self.chain.is_clear() && !left.rival.alone {
-                techniques.bridged * PI * self.chain.square() / (left.cos * cos * left.diffuse)
+                PI * self.chain.square() / (left.cos * cos * left.diffuse)
             } else {
                 0.0
             };

@@ -204,9 +204,8 @@ fn run_with<const N: usize>(
     let channels = Channels::new(mirrors, settings, representation);
     let emitters = Emitters::new(scene);
     let mut receivers = Receiver::all(scene);
-    let (mut techniques, estimator_reason) =
+    let (techniques, estimator_reason) =
         techniques(settings.estimator, &scene.surfaces, &receivers);
-    techniques.bridged *= sharing.trust();
     let main = Modelled::new(scenes, scene, settings.model);
     let apart = channels.apart.map(|_| match settings.model {
         Model::Diffuse => Modelled::new(scenes, scene, Model::Scalar),

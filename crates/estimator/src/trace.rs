@@ -7,7 +7,7 @@
 mod cross;
 mod look;
 
-use crate::bridge::{ONWARD, Partners};
+use crate::bridge::Partners;
 use crate::cover::Cover;
 use crate::direction::cosine_weighted;
 use crate::emitters::{Choice, Start};
@@ -40,9 +40,9 @@ pub(crate) struct Techniques {
     /// Walks from emitters, each joined to every sensor, for one walk from each sensor; 0: none.
     pub local: f64,
     /// Walks from emitters that a walk from a sensor is joined to where it first scatters; 0: none.
-    pub bridged: f64,
-    /// The same as a number of walks; the other is what they count for in the weights.
     pub block: u64,
+    /// What they count for in the weights, at the sensor that a walk starts from.
+    pub bridged: f64,
     /// Walks are taken from the sensors.
     pub gather: bool,
 }
@@ -59,16 +59,11 @@ impl Techniques {
 
     /// By how much likelier than one from a sensor a walk from an emitter is scattered: one such walk serves many others.
     fn launched(self, cover: &Cover) -> f64 {
-        if self.bridged > 0.0 {
+        if self.block > 0 {
             cover.launched()
         } else {
             1.0
         }
-    }
-
-    /// How often, of the times that it would otherwise, a walk from a sensor goes on where it first scatters.
-    pub(crate) fn onward(self) -> f64 {
-        if self.bridged > 0.0 { ONWARD } else { 1.0 }
     }
 }
 
@@ -319,12 +314,7 @@ impl<'a> Walk<'a> {
                 launched.go(hit.distance);
                 odds.diffuse *= self.techniques.launched(meeting.cover);
             }
-            Role::Looking(lookout) => {
-                lookout.go(hit.distance);
-                if lookout.is_sensor() {
-                    odds.diffuse *= self.techniques.onward();
-                }
-            }
+            Role::Looking(lookout) => lookout.go(hit.distance),
         }
         vertex.diffuse = odds.diffuse;
         if odds.diffuse > 0.0 && meeting.cover.scatters() {

@@ -1,7 +1,7 @@
 //! Joining the vertices of walks from the emitters to sensors.
 
 use super::Sensors;
-use crate::bridge::Landings;
+use crate::bridge::{self, Landings};
 use crate::emitters::Start;
 use crate::evaluate::joined;
 use crate::medium::{Medium, Step};
@@ -112,7 +112,7 @@ impl Joining<'_> {
             for (vertex, fluxes) in path.vertices.iter().zip(fluxes.chunks(width)) {
                 depth += 1;
                 if fluxes.iter().any(|&f| f > 0.0) {
-                    if self.techniques.bridged > 0.0 {
+                    if self.techniques.block > 0 {
                         landings.push(&medium, vertex, fluxes, self.uniforms, depth);
                     }
                     effort.joins += self.sensors.receivers.len() as u64;
@@ -170,10 +170,12 @@ impl Joining<'_> {
                         even
                     };
                     let coupling = way.coupling * way.odds;
+                    let rivalry = self.sensors.allocation.rivalry(sensor);
                     weight *= vertex.rival.weight(
                         coupling,
-                        diffuse * self.techniques.onward(),
-                        self.sensors.allocation.rivalry(sensor),
+                        diffuse,
+                        rivalry,
+                        bridge::worth(self.techniques.block, rivalry),
                     );
                 }
                 let arrival = Arrival {
