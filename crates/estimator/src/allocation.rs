@@ -34,7 +34,7 @@ const GATHERED: u64 = 16;
 
 /// By how much less walks from the emitters err in a run, whose points are many and spread evenly. Far from walls their
 /// light is smooth; it is not where walks from the sensors are needed.
-const EVEN: f64 = 3.0;
+const EVEN: f64 = 6.0;
 
 /// Walks from one sensor that tell as much of its variance as the mean over all sensors does.
 const TELLING: f64 = 16.0;

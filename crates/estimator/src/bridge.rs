@@ -21,7 +21,7 @@ const WALKS: u64 = 8;
 const SHARED: f64 = 0.5;
 
 /// The least number of walks from the emitters in a block.
-const FEWEST: u64 = 4;
+const FEWEST: u64 = 2;
 
 /// How many of the points where one walk from an emitter scatters are surely kept, and of those where one from a sensor may
 /// scatter first are surely joined: of later ones the i-th is as often as this over i. Between good mirrors a walk scatters a
@@ -327,8 +327,8 @@ mod tests {
                 assert!((FEWEST..=walks).contains(&(block.end - block.start)));
                 end = block.end;
             }
-            // A run that ends at a first look, of 2, 4, 8 or 16 walks, has launched hardly more.
-            for looked in [4, 8, 16] {
+            // A run that ends at a first look, of 2, 4, 8 or 16 walks, has launched no more.
+            for looked in [2, 4, 8, 16] {
                 assert_eq!(block(looked - 1, walks).end, looked);
             }
         }

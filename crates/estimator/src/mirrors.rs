@@ -375,7 +375,7 @@ impl Mirrors {
     /// are left out.
     fn promises(&self, view: &View, target: &Target) -> Vec<(u32, f64)> {
         let beam = &view.beam;
-        let mut promises = Vec::new();
+        let mut promises = Vec::with_capacity(self.facets.list().len());
         for (index, facet) in (0..).zip(self.facets.list()) {
             if view.facets.last() == Some(&index) {
                 continue;

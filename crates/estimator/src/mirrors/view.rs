@@ -91,7 +91,7 @@ impl Mirrors {
     /// One of the facets that a ray goes through next, with the probability of that choice: each is taken before those
     /// behind it as often as not.
     pub(super) fn met(&self, ray: &Ray, u: f64) -> Option<(u32, f64)> {
-        let mut crossed: Vec<(f64, u32)> = Vec::new();
+        let mut crossed: Vec<(f64, u32)> = Vec::with_capacity(self.facets.list().len());
         for (index, facet) in (0..).zip(self.facets.list()) {
             if ray.facets.last() != Some(&index)
                 && let Some(at) = facet.crossing(ray.apex, ray.direction)
