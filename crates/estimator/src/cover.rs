@@ -276,6 +276,29 @@ mod tests {
         )
     }
 
+    /// Of all surfaces a walk from an emitter may meet, down to the darkest that has a number.
+    #[test]
+    fn walks_from_emitters_scatter_more_often_and_never_more_than_mirrors_leave_them() {
+        for rho in [5e-324, 1e-310, 1e-100, 0.01, 0.5, 0.99, 1.0] {
+            for (fraction, n) in [(0.0, 1.5), (0.6, 1.5), (0.9, 3.0), (0.5, f64::INFINITY)] {
+                let cover = Cover::new([mixture(rho, fraction, n)].into_iter());
+                for cos in [0.0, 1e-9, 0.1, 0.5, 1.0] {
+                    let odds = odds(&cover, cos);
+                    let launched = odds.diffuse * cover.launched();
+                    let what = format!("rho {rho:e}, a {fraction}, n {n}, cos {cos}: {launched:e}");
+                    assert!(launched >= odds.diffuse * (1.0 - 1e-15), "{what}");
+                    assert!(launched + odds.mirror <= 1.0 + 1e-15, "{what}");
+                    // The geometric mean of (1 − a)ρ and 1 − a.
+                    let mean = (1.0 - fraction) * rho.sqrt();
+                    assert!(
+                        (launched / mean - 1.0).abs() < 1e-12 || rho < 1e-300,
+                        "{what}"
+                    );
+                }
+            }
+        }
+    }
+
     #[test]
     fn one_reflector_has_the_odds_of_its_own_bounds() {
         let own = mixture(0.5, 0.6, 1.5);
