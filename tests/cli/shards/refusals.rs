@@ -112,7 +112,7 @@ fn a_damaged_shard_is_told_by_its_name() {
             "{told}"
         );
     }
-    std::fs::write(&path, b"malus state 4\n...").unwrap();
+    std::fs::write(&path, b"malus state 5\n...").unwrap();
     assert_told(
         &folder.unmerged(&["out"]),
         &["is of form 5, this version of malus reads form 6"],
