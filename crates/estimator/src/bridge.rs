@@ -28,9 +28,11 @@ const FEWEST: u64 = 2;
 /// little at each of a million.
 const SURE: u32 = 16;
 
-/// How often the i-th point of a walk takes part.
-pub(crate) fn chance(index: u32) -> f64 {
-    (f64::from(SURE) / f64::from(index)).min(1.0)
+/// The probability with which the point of a walk at a depth takes part, where it does.
+pub(crate) fn taking_part(uniforms: Uniforms, depth: u32) -> Option<f64> {
+    let chance = (f64::from(SURE) / f64::from(depth)).min(1.0);
+    let drawn = chance >= 1.0 || uniforms.at(depth, Purpose::Bridge)[0] < chance;
+    drawn.then_some(chance)
 }
 
 /// How many walks from the emitters one from a sensor is joined to: a power of two.
@@ -185,10 +187,9 @@ impl Landings {
         if vertex.rival.alone {
             return;
         }
-        let chance = chance(depth);
-        if chance < 1.0 && uniforms.at(depth, Purpose::Bridge)[0] >= chance {
+        let Some(chance) = taking_part(uniforms, depth) else {
             return;
-        }
+        };
         let before = self.fluxes.len();
         self.width = fluxes.len();
         let cover = &medium.covers[vertex.material as usize];

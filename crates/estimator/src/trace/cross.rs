@@ -17,11 +17,9 @@ impl<'a> Walk<'a> {
         partners: Partners<'a>,
         joined: f64,
     ) {
-        let chance = bridge::chance(self.depth);
-        let uniforms = || self.uniforms.at(self.depth, Purpose::Bridge);
-        if chance < 1.0 && uniforms()[0] >= chance {
+        let Some(chance) = bridge::taking_part(self.uniforms, self.depth) else {
             return;
-        }
+        };
         let Medium {
             surfaces, covers, ..
         } = self.medium;
@@ -81,7 +79,8 @@ impl<'a> Walk<'a> {
             }
         }
         if !candidates.is_empty()
-            && let Some((landing, weight)) = candidates.choose(uniforms()[1])
+            && let [_, choice, ..] = self.uniforms.at(self.depth, Purpose::Bridge)
+            && let Some((landing, weight)) = candidates.choose(choice)
             && surfaces.visible(vertex.position, partners.landings[landing].position)
         {
             add(landing, weight);
