@@ -6,7 +6,7 @@ use crate::engine::Engine;
 use crate::medium::Medium;
 use crate::pass::{Modelled, is_mirrorlike};
 use crate::receiver::Receiver;
-use crate::trace::Techniques;
+use crate::techniques::Techniques;
 use malus_geometry::Surfaces;
 use malus_scene::{Estimator, Material, Scene, Settings};
 

@@ -9,7 +9,8 @@ use crate::pass::{Channels, Effort, Passes};
 use crate::path::Path;
 use crate::random::{Stream, Uniforms};
 use crate::receiver::Receiver;
-use crate::trace::{Techniques, Walk};
+use crate::techniques::Techniques;
+use crate::trace::Walk;
 use crate::variation::Variation;
 use std::ops::Range;
 

@@ -4,7 +4,7 @@ use crate::emitters::{Site, Start};
 use crate::lookout::Passed;
 use crate::medium::Medium;
 use crate::mirrors::Viewer;
-use crate::trace::Techniques;
+use crate::techniques::Techniques;
 use glam::DVec3;
 use std::f64::consts::PI;
 

@@ -38,6 +38,7 @@ mod spread;
 mod state;
 mod statistics;
 mod student;
+mod techniques;
 mod trace;
 mod variation;
 

@@ -5,7 +5,7 @@ use crate::medium::Medium;
 use crate::mirrors::Viewer;
 use crate::receiver::Receiver;
 use crate::sight::Seen;
-use crate::trace::Techniques;
+use crate::techniques::Techniques;
 use glam::DVec3;
 use malus_geometry::Hit;
 use std::f64::consts::PI;

@@ -6,7 +6,7 @@ use crate::glints::Glints;
 use crate::medium::Medium;
 use crate::mirrors::Mirrors;
 use crate::spread::Spread;
-use crate::trace::Techniques;
+use crate::techniques::Techniques;
 use crate::variation::{Variation, covers};
 use malus_optics::Representation;
 use malus_scene::{Material, Model, Scene, Settings};

@@ -8,7 +8,6 @@ mod cross;
 mod look;
 
 use crate::bridge::Partners;
-use crate::cover::Cover;
 use crate::direction::cosine_weighted;
 use crate::emitters::{Choice, Start};
 use crate::glints::Aim;
@@ -20,6 +19,7 @@ use crate::path::{Event, Path, Vertex};
 use crate::random::{Purpose, Uniforms};
 use crate::receiver::Receiver;
 use crate::sight::Seen;
+use crate::techniques::Techniques;
 use glam::DVec3;
 use look::Look;
 use malus_geometry::Hit;
@@ -31,41 +31,6 @@ pub(crate) const LONGEST: u32 = 1_000_000;
 
 /// Vertices that a path holds at once; a longer walk is handed over in pieces.
 const PIECE: usize = 1024;
-
-/// Which techniques are weighed against each other.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Techniques {
-    /// Vertices look for emitters in flat mirrors too.
-    pub mirrored: bool,
-    /// Walks from emitters, each joined to every sensor, for one walk from each sensor; 0: none.
-    pub local: f64,
-    /// Walks from emitters that a walk from a sensor is joined to where it first scatters; 0: none.
-    pub block: u64,
-    /// What they count for in the weights, at the sensor that a walk starts from.
-    pub bridged: f64,
-    /// Walks are taken from the sensors.
-    pub gather: bool,
-}
-
-impl Techniques {
-    /// Walks from emitters with nothing beside them.
-    pub(crate) const ALONE: Self = Self {
-        mirrored: false,
-        local: 1.0,
-        bridged: 0.0,
-        block: 0,
-        gather: false,
-    };
-
-    /// By how much likelier than one from a sensor a walk from an emitter is scattered: one such walk serves many others.
-    fn launched(self, cover: &Cover) -> f64 {
-        if self.block > 0 {
-            cover.launched()
-        } else {
-            1.0
-        }
-    }
-}
 
 /// A walk under way.
 pub(crate) struct Walk<'a> {
