@@ -6,9 +6,10 @@
 //! cost; as they depend on scene and seed alone, the sums of a run do not depend on when it stops.
 
 use crate::bridge::Launches;
-use crate::gather::{Aims, Observer, gather};
+use crate::gather::{Aims, Observers, gather};
 use crate::local::{Sensors, local};
 use crate::medium::Medium;
+use crate::neighbours::{Neighbours, shared_out};
 use crate::pass::{Channels, Effort, Passes};
 use crate::random::Stream;
 use crate::receiver::Receiver;
@@ -22,6 +23,9 @@ const PARTS: u32 = 64;
 
 /// Greatest share, in parts: eight walks from the sensor for one from the emitters.
 const MOST: u32 = 8 * PARTS;
+
+/// Most walks that a sensor takes in a round, of which one of its neighbours takes one.
+const TIMES: u32 = 8;
 
 /// Share with which the pilot weighs the two kinds of walk against each other, in parts.
 const TRIED: u32 = PARTS / 8;
@@ -77,10 +81,29 @@ impl Sharing<'_> {
     }
 }
 
+/// The sensors of a run, for a pilot to take walks from.
+pub(crate) struct Stations<'a> {
+    /// Each of them.
+    pub receivers: &'a [Receiver],
+    /// The same, to be asked which of them a point sees.
+    pub targets: &'a Targets,
+    /// How each aims at small mirrors.
+    pub aims: &'a [Aims<'a>],
+    /// To which neighbours each belongs.
+    pub memberships: Vec<usize>,
+    /// Whether neighbours share walks.
+    pub share: bool,
+}
+
 /// Walks from each sensor, relative to those from the emitters, as the pilot of a run has found them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Allocation {
+    /// Rounds of walks from each sensor for [`PARTS`] walks from the emitters: the same for neighbours.
     parts: Vec<u32>,
+    /// Walks that each sensor takes in a round.
+    times: Vec<u32>,
+    /// To which neighbours each sensor belongs.
+    pub(crate) memberships: Vec<usize>,
     /// How much a walk from the emitters counts for.
     trust: f64,
     /// Relative variance at the worst sensor that one walk from the emitters, with its share of walks from the sensors, is
@@ -90,9 +113,11 @@ pub struct Allocation {
 
 impl Allocation {
     /// As many from each sensor as from all emitters together.
-    pub(crate) fn even(sensors: usize) -> Self {
+    pub(crate) fn even(memberships: Vec<usize>) -> Self {
         Self {
-            parts: vec![PARTS; sensors],
+            parts: vec![PARTS; memberships.len()],
+            times: vec![1; memberships.len()],
+            memberships,
             trust: 1.0,
             variance: f64::INFINITY,
         }
@@ -103,41 +128,58 @@ impl Allocation {
         (self.variance / launched as f64).sqrt()
     }
 
-    /// Walks that a sensor has taken in a replica once so many were taken from the emitters.
+    /// Rounds of walks that a sensor has taken in a replica once so many were taken from the emitters.
     #[inline]
-    pub(crate) fn walks(&self, sensor: usize, launched: u64) -> u64 {
-        let walks = u128::from(launched) * u128::from(self.parts[sensor]);
-        u64::try_from(walks.div_ceil(u128::from(PARTS))).unwrap_or(u64::MAX)
+    pub(crate) fn rounds(&self, sensor: usize, launched: u64) -> u64 {
+        let rounds = u128::from(launched) * u128::from(self.parts[sensor]);
+        u64::try_from(rounds.div_ceil(u128::from(PARTS))).unwrap_or(u64::MAX)
     }
 
-    /// The last walk from the emitters that has been taken when a sensor's walk of that index is.
+    /// Walks that a sensor has taken by then.
     #[inline]
-    pub(crate) fn partner(&self, sensor: usize, walk: u64) -> u64 {
-        let launched = u128::from(walk) * u128::from(PARTS) / u128::from(self.parts[sensor]);
+    pub(crate) fn walks(&self, sensor: usize, launched: u64) -> u64 {
+        self.rounds(sensor, launched)
+            .saturating_mul(u64::from(self.times[sensor]))
+    }
+
+    /// Walks that each sensor takes in a round.
+    pub(crate) fn times(&self) -> &[u32] {
+        &self.times
+    }
+
+    /// The last walk from the emitters that has been taken when a sensor's round of that index is.
+    #[inline]
+    pub(crate) fn partner(&self, sensor: usize, round: u64) -> u64 {
+        let launched = u128::from(round) * u128::from(PARTS) / u128::from(self.parts[sensor]);
         u64::try_from(launched).unwrap_or(u64::MAX)
     }
 
     /// Walks from the emitters for one walk from this sensor.
     fn launched(&self, sensor: usize) -> f64 {
-        f64::from(PARTS) / f64::from(self.parts[sensor])
+        f64::from(PARTS) / (f64::from(self.parts[sensor]) * f64::from(self.times[sensor]))
     }
 
-    /// Weight of walks from the emitters against those from this sensor, beside the densities of their points.
+    /// Weight of walks from the emitters against one walk a round from this sensor, beside the densities of their points.
     #[inline]
     pub(crate) fn rivalry(&self, sensor: usize) -> f64 {
-        self.trust * self.launched(sensor)
+        self.trust * f64::from(PARTS) / f64::from(self.parts[sensor])
     }
 
     /// The shares that a pilot run finds, for sensors of which the irradiance `exact` is known without walks.
     pub(crate) fn piloted(
         passes: &Passes,
-        receivers: &[Receiver],
-        targets: &Targets,
-        aims: &[Aims],
+        stations: Stations,
         exact: impl Fn(usize) -> f64,
         seed: u64,
         sharing: Sharing,
     ) -> Self {
+        let Stations {
+            receivers,
+            targets,
+            aims,
+            memberships,
+            share,
+        } = stations;
         let trust = sharing.trust();
         let sensors = receivers.len();
         let free: Vec<usize> = (0..sensors)
@@ -158,11 +200,18 @@ impl Allocation {
             channels: Channels::of_intensity(),
             receivers,
             targets,
+            neighbours: Neighbours::all(
+                passes.main.surfaces,
+                receivers,
+                &memberships,
+                &vec![1; sensors],
+                share,
+            ),
             aims,
             tried: Self {
                 parts: vec![TRIED; sensors],
                 trust,
-                variance: f64::INFINITY,
+                ..Self::even(memberships)
             },
         };
         let rounds: Vec<Round> = (0..ROUNDS)
@@ -195,8 +244,8 @@ impl Allocation {
         let gathered = own * free.len() as f64;
         let cost_gathered = rounds.iter().map(|r| r.cost_gathered).sum::<f64>() / gathered;
         let mut shares = Self {
-            trust,
-            ..Self::even(sensors)
+            parts: vec![PARTS; sensors],
+            ..pilot.tried
         };
         if let Some(shared) = cheapest(&needs, cost_launched, cost_gathered) {
             for (&sensor, need) in free.iter().zip(&needs) {
@@ -204,12 +253,31 @@ impl Allocation {
                 // A share that is no number asks for nothing, and no share is nothing.
                 shares.parts[sensor] = (parts.round() as u32).clamp(1, MOST);
             }
+            for neighbours in &pilot.neighbours {
+                shares.share_out(&neighbours.members);
+            }
             let left = |(&sensor, need): (&usize, &Need)| {
                 need.launched + need.gathered * shares.launched(sensor)
             };
             shares.variance = free.iter().zip(&needs).map(left).fold(0.0, f64::max);
         }
         shares
+    }
+}
+
+impl Allocation {
+    /// Gives sensors that share walks, and of which each has its own share by now, rounds in which they take as many in
+    /// proportion.
+    fn share_out(&mut self, members: &[usize]) {
+        let parts = |&sensor: &usize| self.parts[sensor];
+        let least = members.iter().map(parts).min().unwrap_or(PARTS);
+        let most = members.iter().map(parts).max().unwrap_or(PARTS);
+        let parts = least.max(most.div_ceil(TIMES));
+        for &sensor in members {
+            let times = f64::from(self.parts[sensor]) / f64::from(parts);
+            self.times[sensor] = (times.round() as u32).max(1);
+            self.parts[sensor] = parts;
+        }
     }
 }
 
@@ -275,6 +343,7 @@ struct Pilot<'a> {
     channels: Channels,
     receivers: &'a [Receiver],
     targets: &'a Targets,
+    neighbours: Vec<Neighbours>,
     aims: &'a [Aims<'a>],
     /// Walks from each sensor in one round.
     walks: u64,
@@ -300,6 +369,7 @@ impl Pilot<'_> {
             &Sensors {
                 receivers: self.receivers,
                 targets: self.targets,
+                neighbours: &self.neighbours,
                 allocation: &self.tried,
             },
             stream,
@@ -309,23 +379,25 @@ impl Pilot<'_> {
         );
         let mut gathered = vec![0.0; launched.len()];
         let mut effort = Effort::default();
-        for (sensor, sums) in gathered.chunks_mut(count).enumerate() {
-            if !self.receivers[sensor].enclosed {
-                effort += gather::<1>(
-                    &self.passes,
-                    &self.channels,
-                    Observer {
-                        receiver: &self.receivers[sensor],
-                        aims: &self.aims[sensor],
-                        rivalry: self.tried.rivalry(sensor),
-                        launches: &launches,
-                        partners: &|_| 0..LAUNCHED,
-                    },
-                    stream.branch(sensor as u64),
-                    0..self.walks,
-                    sums,
-                );
-            }
+        let sums = gathered.chunks_mut(count);
+        let shared = shared_out(&self.neighbours, sums);
+        for (neighbours, mut sums) in self.neighbours.iter().zip(shared) {
+            let first = neighbours.members[0];
+            effort += gather::<1>(
+                &self.passes,
+                &self.channels,
+                Observers {
+                    neighbours,
+                    receivers: self.receivers,
+                    aims: self.aims,
+                    rivalry: self.tried.rivalry(first),
+                    launches: &launches,
+                    partners: &|_| 0..LAUNCHED,
+                },
+                stream,
+                0..self.walks,
+                &mut sums,
+            );
         }
         let look = if self.passes.main.mirrors.is_empty() {
             0.0
@@ -354,8 +426,7 @@ mod tests {
     fn walks_of_a_share_are_rounded_up_so_that_every_sensor_has_one() {
         let shares = Allocation {
             parts: vec![1, 16, 64, 512],
-            trust: 1.0,
-            variance: 1.0,
+            ..Allocation::even(vec![0, 1, 2, 3])
         };
         let walks = |launched| [0, 1, 2, 3].map(|sensor| shares.walks(sensor, launched));
         assert_eq!(walks(0), [0; 4]);

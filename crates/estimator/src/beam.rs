@@ -104,6 +104,85 @@ pub(crate) fn form_factor(point: DVec3, normal: DVec3, corners: &[DVec3]) -> f64
     share(&edges, normal)
 }
 
+/// Parts of a polygon that may be left of it before it is given up.
+const MOST: usize = 64;
+
+/// The same of what opaque triangles leave of the polygon; `None` where that falls into too many parts.
+pub(crate) fn form_factor_behind(
+    point: DVec3,
+    normal: DVec3,
+    corners: &[DVec3],
+    triangles: impl Iterator<Item = [DVec3; 3]>,
+) -> Option<f64> {
+    let mut edges: Vec<DVec3> = corners.iter().map(|&c| c - point).collect();
+    let [a, b, c, ..] = edges[..] else {
+        return Some(0.0);
+    };
+    // Along this normal the polygon lies deep below the point.
+    let down = (b - a).cross(c - a).normalize();
+    let down = down * a.dot(down).signum();
+    let depth = a.dot(down);
+    clip(&mut edges, normal, 0.0);
+    let mut parts = vec![edges];
+    for triangle in triangles {
+        let mut shade: Vec<DVec3> = triangle.iter().map(|&corner| corner - point).collect();
+        clip(&mut shade, down, NEAREST * depth);
+        clip(&mut shade, -down, -depth);
+        if shade.len() > 2 {
+            parts = parts
+                .into_iter()
+                .flat_map(|part| beside(part, &shade))
+                .collect();
+        }
+        if parts.len() > MOST {
+            return None;
+        }
+    }
+    for part in &mut parts {
+        drop_doubles(part);
+    }
+    Some(parts.iter().map(|part| share(part, normal)).sum())
+}
+
+/// What is nearer to a point than this share of a polygon's distance stands beside the polygon, as far as directions tell.
+const NEAREST: f64 = 1e-9;
+
+/// Sine of the angle below which a corner lies in a plane through the point.
+const FLAT: f64 = 1e-13;
+
+/// The convex parts of a convex polygon that are seen beside a convex shade.
+fn beside(part: Vec<DVec3>, shade: &[DVec3]) -> Vec<Vec<DVec3>> {
+    let next = || shade.iter().cycle().skip(1);
+    let turn: f64 = {
+        let middle: DVec3 = shade.iter().sum();
+        let across = shade.iter().zip(next()).map(|(a, &b)| a.cross(b));
+        across.sum::<DVec3>().dot(middle).signum()
+    };
+    let planes: Vec<DVec3> = shade
+        .iter()
+        .zip(next())
+        .map(|(a, &b)| a.cross(b).normalize_or_zero() * turn)
+        .collect();
+    let reaches = |part: &[DVec3], plane: DVec3| {
+        part.iter()
+            .any(|edge| edge.dot(plane) > FLAT * edge.length())
+    };
+    if planes.iter().any(|&plane| !reaches(&part, plane)) {
+        return vec![part];
+    }
+    let mut left = Vec::new();
+    let mut rest = part;
+    for plane in planes {
+        if reaches(&rest, -plane) {
+            let mut outside = rest.clone();
+            clip(&mut outside, -plane, 0.0);
+            left.push(outside);
+            clip(&mut rest, plane, 0.0);
+        }
+    }
+    left
+}
+
 /// Lambert's sum over the edges of a polygon, (1/2π) Σ γ **N**·(**e** × **e**′)/|**e** × **e**′| with γ the angle between
 /// neighbours.
 fn share(edges: &[DVec3], normal: DVec3) -> f64 {
@@ -231,5 +310,52 @@ mod tests {
             );
         }
         assert_eq!(inside, 1);
+    }
+
+    #[test]
+    fn what_opaque_triangles_leave_of_a_polygon_has_the_form_factor_of_its_parts() {
+        let square = |least: f64, most: f64, z: f64| {
+            [(least, least), (most, least), (most, most), (least, most)]
+                .map(|(x, y)| DVec3::new(x, y, z))
+        };
+        let halves = |[a, b, c, d]: [DVec3; 4]| [[a, b, c], [a, c, d]];
+        let eye = DVec3::new(0.5, 0.5, 0.0);
+        let lamp = square(0.0, 1.0, 1.0);
+        let factor = |triangles: &[[DVec3; 3]]| {
+            form_factor_behind(eye, DVec3::Z, &lamp, triangles.iter().copied()).unwrap()
+        };
+        let whole = form_factor(eye, DVec3::Z, &lamp);
+        assert!((factor(&[]) - whole).abs() < 1e-15);
+        // Half as high, the middle square of a ninth hides what one twice as wide would in the plane of the lamp.
+        let sheet = halves(square(0.4, 0.6, 0.5));
+        let hidden = form_factor(eye, DVec3::Z, &square(0.3, 0.7, 1.0));
+        assert!((factor(&sheet) - (whole - hidden)).abs() < 1e-14);
+        // What is hidden twice, from either side, is hidden once.
+        let [[a, b, c], other] = sheet;
+        let twice = [[c, b, a], other, [a, b, c], other];
+        assert!((factor(&twice) - (whole - hidden)).abs() < 1e-14);
+        // A wall through the plane of the lamp, seen edge-on, hides nothing; behind the lamp nothing does.
+        let wall = [
+            DVec3::new(0.5, 0.0, 0.0),
+            DVec3::new(0.5, 1.0, 0.0),
+            DVec3::new(0.5, 0.5, 2.0),
+        ];
+        let behind = halves(square(-1.0, 2.0, 1.5));
+        assert!((factor(&[wall]) - whole).abs() < 1e-14);
+        assert!((factor(&behind) - whole).abs() < 1e-14);
+        // A sheet over all of it leaves nothing, and one that reaches below the eye half of it.
+        assert!(factor(&halves(square(0.0, 1.0, 0.5))) < 1e-15);
+        let steep = [
+            [(0.5, -9.0, 0.5), (0.5, 9.0, 0.5), (9.0, 9.0, -3.0)],
+            [(0.5, -9.0, 0.5), (9.0, 9.0, -3.0), (9.0, -9.0, -3.0)],
+        ];
+        let steep = steep.map(|it| it.map(|(x, y, z)| DVec3::new(x, y, z)));
+        assert!((factor(&steep) - 0.5 * whole).abs() < 1e-14);
+        // Too many parts are left to chance.
+        let comb = (0..200).map(|tooth| {
+            let x = f64::from(tooth) / 200.0;
+            [(x, -1.0), (x + 0.002, -1.0), (x + 0.001, 2.0)].map(|(x, y)| DVec3::new(x, y, 0.9))
+        });
+        assert_eq!(form_factor_behind(eye, DVec3::Z, &lamp, comb), None);
     }
 }

@@ -18,7 +18,7 @@ const WALKS_IN_CELLS: u64 = 16;
 const WALKS: u64 = 8;
 
 /// How much of what such walks bring is chance that the walks from one sensor share, as they are joined to the same ones.
-const SHARED: f64 = 0.5;
+const SHARED: f64 = 0.2;
 
 /// The least number of walks from the emitters in a block.
 const FEWEST: u64 = 2;
@@ -80,8 +80,6 @@ pub(crate) struct Landing {
     pub most: f64,
     /// The first of those in a row up to this one that lie in its cell and scatter evenly; none where it does not.
     alike: usize,
-    /// Probability with which the walk was scattered there.
-    reverse: f64,
     /// What competes with joining it to a sensor.
     rival: Rival,
     /// Walks from the sensor that find the emitter by themselves, where that is the same in all directions.
@@ -99,8 +97,6 @@ pub(crate) struct Abutment {
     pub cell: Option<u32>,
     /// Probability with which the walk goes on from there into a random direction.
     pub onward: f64,
-    /// Density of walks from emitters that are joined to the sensor from there.
-    pub joined: f64,
     /// Walks from emitters that it is joined to, as the weights have it.
     pub walks: f64,
 }
@@ -127,7 +123,7 @@ impl Abutment {
         let cosines = span.dot(self.normal).max(0.0) * -span.dot(landing.normal).min(0.0);
         let square = span.length_squared();
         // Of G/(1 + G r) with the coupling G = cosines/(π square²): next to each other in a corner points have a limit.
-        let rivals = (self.onward * searching + landing.reverse * self.joined) / self.walks;
+        let rivals = self.onward * searching / self.walks;
         let weight = cosines / (PI * square * square + cosines * rivals);
         if weight < f64::INFINITY { weight } else { 0.0 }
     }
@@ -212,7 +208,6 @@ impl Landings {
             polarises,
             alike,
             most: self.fluxes[before..].iter().copied().fold(0.0, f64::max),
-            reverse: vertex.diffuse,
             rival: vertex.rival,
             searching: vertex.rival.searching(cover.diffuse(1.0, 0.0)),
         });

@@ -3,8 +3,9 @@
 use crate::allocation::Allocation;
 use crate::bridge::{self, Launches};
 use crate::direct::{Cells, direct};
-use crate::gather::{Aims, Observer, gather};
+use crate::gather::{Aims, Observers, gather};
 use crate::local::{Sensors, local};
+use crate::neighbours::{Neighbours, shared_out};
 use crate::pass::{Channels, Effort, Passes};
 use crate::random::Stream;
 use crate::receiver::Receiver;
@@ -19,9 +20,6 @@ const STEP: u64 = 1 << 14;
 /// How many it may take to end with a block of those that walks from sensors are joined to.
 const LONGEST_STEP: u64 = 1 << 19;
 
-/// Sensors of one replica that one task gathers at.
-const TASK: usize = 16;
-
 /// A scene made ready for `N` components.
 pub(crate) struct Engine<'a, const N: usize> {
     /// The walks.
@@ -32,6 +30,8 @@ pub(crate) struct Engine<'a, const N: usize> {
     pub receivers: &'a [Receiver],
     /// The sensors, to be asked which of them a point sees.
     pub targets: &'a Targets,
+    /// Those that share walks of their own.
+    pub neighbours: &'a [Neighbours],
     /// Walks from each sensor, relative to those from the emitters.
     pub allocation: &'a Allocation,
     /// How each sensor aims at small mirrors.
@@ -109,6 +109,7 @@ impl<const N: usize> Engine<'_, N> {
         Sensors {
             receivers: self.receivers,
             targets: self.targets,
+            neighbours: self.neighbours,
             allocation: self.allocation,
         }
     }
@@ -164,30 +165,28 @@ impl<const N: usize> Engine<'_, N> {
     fn advance_gather(&self, replica: &mut Replica, until: u64, launches: &Launches) -> Effort {
         let stream = Stream::new(self.seed, replica.id);
         let taken = replica.points;
-        let efforts: Vec<Effort> = replica.sums[..self.length()]
-            .par_chunks_mut(self.width())
-            .zip(self.receivers)
-            .enumerate()
-            .with_min_len(TASK)
-            .map(|(sensor, (sums, receiver))| {
-                if receiver.enclosed {
-                    return Effort::default();
-                }
-                let stream = stream.branch(sensor as u64);
-                let walks = |launched| self.allocation.walks(sensor, launched);
+        let sums = replica.sums[..self.length()].chunks_mut(self.width());
+        let efforts: Vec<Effort> = shared_out(self.neighbours, sums)
+            .into_par_iter()
+            .zip(self.neighbours)
+            .map(|(mut sums, neighbours)| {
+                // All of them take as many rounds.
+                let first = neighbours.members[0];
+                let rounds = |launched| self.allocation.rounds(first, launched);
                 gather::<N>(
                     &self.passes,
                     &self.channels,
-                    Observer {
-                        receiver,
-                        aims: &self.aims[sensor],
-                        rivalry: self.allocation.rivalry(sensor),
+                    Observers {
+                        neighbours,
+                        receivers: self.receivers,
+                        aims: self.aims,
+                        rivalry: self.allocation.rivalry(first),
                         launches,
-                        partners: &|walk| self.block(self.allocation.partner(sensor, walk)),
+                        partners: &|round| self.block(self.allocation.partner(first, round)),
                     },
                     stream,
-                    walks(taken)..walks(until),
-                    sums,
+                    rounds(taken)..rounds(until),
+                    &mut sums,
                 )
             })
             .collect();

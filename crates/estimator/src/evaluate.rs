@@ -28,6 +28,33 @@ use malus_optics::{
 /// Light on its way, per unit of what it started with, in a basis of its own; `None`: unpolarised.
 type Light<const N: usize> = Option<(Stokes<N, Carried>, Basis<Carried>)>;
 
+/// What a sensor reads of a walk in one variant.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reading<const N: usize> {
+    /// The irradiance, in the sensor's basis.
+    sum: Stokes<N, Sensor>,
+    /// Of S0, what was seen in mirrors and what was met by chance.
+    pub found: [f64; 2],
+}
+
+impl<const N: usize> Reading<N> {
+    /// Nothing read yet.
+    fn nothing() -> Self {
+        Self {
+            sum: Stokes::unpolarised(0.0),
+            found: [0.0; 2],
+        }
+    }
+
+    /// The irradiance, in the sensor's basis.
+    pub(crate) fn light(&self) -> [f64; N] {
+        self.sum.components()
+    }
+}
+
+/// Readings of light that is the sensor's own, and of that which neighbours share.
+pub(crate) type Readings<const N: usize> = [Reading<N>; 2];
+
 /// Light that leaves an emitter.
 fn emitted<const N: usize>(direction: DVec3, state: State) -> Light<N> {
     match state {

@@ -2,9 +2,10 @@
 //! emitters met by chance count where looking could not, or was less likely to, find them.
 
 use crate::bridge::{self, Launches, Partners};
-use crate::evaluate::{Gathering, Strands};
+use crate::evaluate::{Gathering, Readings, Strands};
 use crate::glints::Aim;
 use crate::medium::Medium;
+use crate::neighbours::{Member, Neighbours};
 use crate::pass::{Channels, Effort, Passes};
 use crate::path::Path;
 use crate::random::{Stream, Uniforms};
@@ -14,85 +15,161 @@ use crate::trace::Walk;
 use crate::variation::Variation;
 use std::ops::Range;
 
-/// A sensor that walks are taken from.
+/// Sensors that walks are taken from.
 #[derive(Clone, Copy)]
-pub(crate) struct Observer<'a> {
-    /// The sensor.
-    pub receiver: &'a Receiver,
-    /// How the companions of its walks are aimed.
-    pub aims: &'a Aims<'a>,
-    /// Weight of walks from the emitters against its own.
+pub(crate) struct Observers<'a> {
+    /// Those that share their walks.
+    pub neighbours: &'a Neighbours,
+    /// All sensors.
+    pub receivers: &'a [Receiver],
+    /// How the companions of the walks of each sensor are aimed.
+    pub aims: &'a [Aims<'a>],
+    /// Weight of walks from the emitters against those from one of the neighbours.
     pub rivalry: f64,
-    /// Walks from the emitters that its own are joined to.
+    /// Walks from the emitters that those from sensors are joined to.
     pub launches: &'a Launches,
     /// Which of them a walk is joined to.
     pub partners: &'a dyn Fn(u64) -> Range<u64>,
 }
 
-/// Adds the walks `range` of one sensor to its sums, those of one variant after those of the other.
+/// Adds the rounds `range` of walks from the neighbours to their sums, one slice each, those of one variant after those of the
+/// other.
 pub(crate) fn gather<const N: usize>(
     passes: &Passes,
     channels: &Channels,
-    observer: Observer,
+    observers: Observers,
     stream: Stream,
     range: Range<u64>,
-    sums: &mut [f64],
+    sums: &mut [&mut [f64]],
 ) -> Effort {
-    let Observer {
-        receiver,
+    let Observers {
+        neighbours,
+        receivers,
         aims,
         rivalry,
         launches,
         partners,
-    } = observer;
+    } = observers;
     let techniques = Techniques {
-        local: rivalry * passes.techniques.local,
-        bridged: bridge::worth(passes.techniques.block, rivalry),
+        bridged: bridge::worth(
+            passes.techniques.block,
+            rivalry / f64::from(neighbours.round()),
+        ),
         ..passes.techniques
     };
     let mut effort = Effort::default();
     let mut path = Path::default();
-    let count = channels.count;
-    for index in range {
-        let uniforms = stream.walk(index);
+    for round in range {
         let joined = |landings| {
-            let block = (techniques.block > 0).then(|| partners(index))?;
+            let block = (techniques.block > 0).then(|| partners(round))?;
             Some(Partners::new(landings, launches.first, &block))
         };
-        let way = Way {
-            techniques,
-            medium: passes.main,
-            receiver: *receiver,
-            uniforms,
-            aim: aims.main.as_ref(),
-            partners: joined(&launches.main),
-        };
-        let variants = passes.main.variations.len();
-        let mut main = Reader::<N>::new(receiver, &passes.main, 0);
-        if let Some(channel) = channels.along {
-            let mut scalar = Reader::<1>::new(receiver, &passes.main, variants);
-            effort += way.follow(&mut path, |path, part| {
-                main.read(path, part);
-                scalar.read(path, part);
-            });
-            scalar.add(sums, count, channel, None);
-        } else {
-            effort += way.follow(&mut path, |path, part| main.read(path, part));
-        }
-        main.add(sums, count, 0, Some(channels.found));
-        if let (Some(medium), Some(channel)) = (passes.apart, channels.apart) {
-            let mut apart = Reader::<1>::new(receiver, &medium, 0);
+        let of_main = joined(&launches.main);
+        let of_apart = passes.apart.and_then(|_| joined(&launches.apart));
+        let walks = neighbours.members.iter().enumerate();
+        let walks = walks.filter(|(_, sensor)| !receivers[**sensor].enclosed);
+        let walks = walks.flat_map(|(place, &sensor)| {
+            let times = u64::from(neighbours.times(place));
+            (round * times..(round + 1) * times).map(move |index| (place, sensor, index))
+        });
+        for (place, sensor, index) in walks {
+            let receiver = &receivers[sensor];
+            let member = Member { neighbours, place };
+            let rivalry = rivalry / f64::from(neighbours.times(place));
             let way = Way {
-                medium,
-                aim: aims.apart.as_ref(),
-                partners: joined(&launches.apart),
-                ..way
+                techniques: Techniques {
+                    local: rivalry * techniques.local,
+                    ..techniques
+                },
+                medium: passes.main,
+                receiver: *receiver,
+                uniforms: stream.branch(sensor as u64).walk(index),
+                aim: aims[sensor].main.as_ref(),
+                partners: of_main,
+                member: neighbours.share().then_some(member),
             };
-            effort += way.follow(&mut path, |path, part| apart.read(path, part));
-            apart.add(sums, count, channel, None);
+            let mut sums = Sums {
+                neighbours: sums,
+                place,
+                count: channels.count,
+            };
+            let variants = passes.main.variations.len();
+            let found = Some(channels.found);
+            let mut main = Reader::<N>::new(receiver, &passes.main, 0);
+            if let Some(channel) = channels.along {
+                let mut scalar = Reader::<1>::new(receiver, &passes.main, variants);
+                effort += way.follow(&mut path, |path, part| {
+                    main.read(path, part);
+                    scalar.read(path, part);
+                });
+                sums.add(scalar.readings(), &path.shares, channel, None);
+            } else {
+                effort += way.follow(&mut path, |path, part| main.read(path, part));
+            }
+            sums.add(main.readings(), &path.shares, 0, found);
+            if let (Some(medium), Some(channel)) = (passes.apart, channels.apart) {
+                let mut apart = Reader::<1>::new(receiver, &medium, 0);
+                let way = Way {
+                    medium,
+                    aim: aims[sensor].apart.as_ref(),
+                    partners: of_apart,
+                    ..way
+                };
+                effort += way.follow(&mut path, |path, part| apart.read(path, part));
+                sums.add(apart.readings(), &path.shares, channel, None);
+            }
         }
     }
     effort
+}
+
+/// The sums that a walk adds to.
+struct Sums<'s, 'r> {
+    /// Those of all neighbours.
+    neighbours: &'s mut [&'r mut [f64]],
+    /// Whose walk it is.
+    place: usize,
+    /// How many a sensor has in each variant.
+    count: usize,
+}
+
+impl Sums<'_, '_> {
+    /// Adds what a walk has read in each variant: light from the `channel` on, and where it came from, if that is asked for, from
+    /// the channel `found` on. Each neighbour takes its share of what is shared.
+    fn add<const N: usize>(
+        &mut self,
+        readings: &[Readings<N>],
+        shares: &[f64],
+        channel: usize,
+        found: Option<usize>,
+    ) {
+        for (variant, [own, shared]) in readings.iter().enumerate() {
+            let first = variant * self.count;
+            let sums = &mut self.neighbours[self.place][first..];
+            for (sum, value) in sums[channel..].iter_mut().zip(own.light()) {
+                *sum += value;
+            }
+            if let Some(found) = found {
+                for (sum, value) in sums[found..].iter_mut().zip(own.found) {
+                    *sum += value;
+                }
+            }
+            // What is shared has left a surface unpolarised.
+            let s0 = shared.light()[0];
+            if s0 <= 0.0 {
+                continue;
+            }
+            for (sums, share) in self.neighbours.iter_mut().zip(shares) {
+                let sums = &mut sums[first..];
+                sums[channel] += s0 * share;
+                if let Some(found) = found {
+                    for (sum, value) in sums[found..].iter_mut().zip(shared.found) {
+                        *sum += value * share;
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// What a sensor reads of one walk: in one variant, or in several.
@@ -117,26 +194,11 @@ impl<'r, const N: usize> Reader<'r, N> {
         }
     }
 
-    /// Adds what was read to the sums of each variant, of which there are `count`: light from the `channel` on, and where it
-    /// came from, if that is asked for, from the channel `found` on.
-    fn add(&self, sums: &mut [f64], count: usize, channel: usize, found: Option<usize>) {
-        let add = |sums: &mut [f64], light: [f64; N], parts: [f64; 2]| {
-            for (sum, value) in sums[channel..].iter_mut().zip(light) {
-                *sum += value;
-            }
-            if let Some(found) = found {
-                for (sum, value) in sums[found..].iter_mut().zip(parts) {
-                    *sum += value;
-                }
-            }
-        };
+    /// What was read in each variant.
+    fn readings(&self) -> &[Readings<N>] {
         match self {
-            Self::Alone(gathering, _) => add(sums, gathering.sum(), gathering.found()),
-            Self::Several(strands) => {
-                for (sums, (light, parts)) in sums.chunks_mut(count).zip(strands.readings()) {
-                    add(sums, light, parts);
-                }
-            }
+            Self::Alone(gathering, _) => std::slice::from_ref(gathering.readings()),
+            Self::Several(strands) => strands.readings(),
         }
     }
 }
@@ -193,6 +255,8 @@ pub(crate) struct Way<'w> {
     pub aim: Option<&'w Aim<'w>>,
     /// The walks from the emitters that it is joined to.
     pub partners: Option<Partners<'w>>,
+    /// The sensor among those that share the walk.
+    pub member: Option<Member<'w>>,
 }
 
 impl<'w> Way<'w> {
@@ -209,8 +273,12 @@ impl<'w> Way<'w> {
             uniforms,
             aim,
             partners,
+            member,
         } = *self;
-        let walk = Walk::from_sensor(medium, techniques, uniforms, &receiver, aim, partners);
+        path.shares.clear();
+        let walk = Walk::from_sensor(
+            medium, techniques, uniforms, &receiver, aim, partners, member,
+        );
         let companion =
             aim.and_then(|aim| Walk::aimed(medium, techniques, uniforms, &receiver, aim));
         let mut effort = Effort {

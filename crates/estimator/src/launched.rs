@@ -6,7 +6,6 @@ use crate::medium::Medium;
 use crate::mirrors::Viewer;
 use crate::techniques::Techniques;
 use glam::DVec3;
-use std::f64::consts::PI;
 
 /// The techniques that compete with joining a point of a walk to a sensor, in units of that.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -15,10 +14,8 @@ pub(crate) struct Rival {
     looked: f64,
     /// Walks from the sensor that meet the emitter by chance.
     met: f64,
-    /// Walks from the sensor that are joined to this one at its last diffuse event, each to one.
-    bridged: f64,
     /// Whether this is the first point that scatters.
-    first: bool,
+    pub first: bool,
     /// Nothing else can have found this light: it comes from a source without area by a mirror that none looks into.
     pub alone: bool,
 }
@@ -27,11 +24,10 @@ impl Rival {
     /// Weight of joining the point to a sensor by a way of the given coupling cos θ cos θ′/(π r²), in 1/m².
     ///
     /// A walk that came from the sensor would be scattered at the point with the probability `diffuse`, and there are
-    /// `walks` walks from emitters for one such walk, which is joined to `bridged` of them itself.
+    /// `walks` walks from emitters for one such walk.
     #[inline]
-    pub(crate) fn weight(&self, coupling: f64, diffuse: f64, walks: f64, bridged: f64) -> f64 {
-        let rivals = self.searching(diffuse) + bridged * self.bridged;
-        1.0 / (1.0 + coupling / walks * rivals)
+    pub(crate) fn weight(&self, coupling: f64, diffuse: f64, walks: f64) -> f64 {
+        1.0 / (1.0 + coupling / walks * self.searching(diffuse))
     }
 
     /// Walks from the sensor that find the emitter by themselves.
@@ -45,17 +41,6 @@ impl Rival {
     }
 }
 
-/// The last diffuse event of a walk.
-#[derive(Debug, Clone)]
-struct Left {
-    /// What competes at the next point, but for the probability of being scattered there.
-    rival: Rival,
-    /// Cosine of the walk's direction to the normal.
-    cos: f64,
-    /// Probability of the event.
-    diffuse: f64,
-}
-
 /// A walk from an emitter, as other techniques would see it.
 #[derive(Debug, Clone)]
 pub(crate) struct Launched<'a> {
@@ -64,8 +49,8 @@ pub(crate) struct Launched<'a> {
     leaving: DVec3,
     /// Mirrors and panes passed since the last diffuse event.
     pub chain: Passed,
-    /// After such an event: how the walk left it.
-    left: Option<Left>,
+    /// After such an event: what competes at the next point, but for the probability of being scattered there.
+    left: Option<Rival>,
 }
 
 impl<'a> Launched<'a> {
@@ -92,16 +77,8 @@ impl<'a> Launched<'a> {
         viewer: Viewer,
         cos: f64,
     ) -> Rival {
-        if let Some(left) = &self.left {
-            let bridged = if self.chain.is_clear() && !left.rival.alone {
-                PI * self.chain.square() / (left.cos * cos * left.diffuse)
-            } else {
-                0.0
-            };
-            return Rival {
-                bridged,
-                ..left.rival
-            };
+        if let Some(left) = self.left {
+            return left;
         }
         let area_density = self.site.area_density();
         let probability = match self.chain.facets() {
@@ -121,15 +98,14 @@ impl<'a> Launched<'a> {
                 0.0
             },
             met: area_density.map_or(0.0, |density| 1.0 / density),
-            bridged: 0.0,
             first: true,
             alone: area_density.is_none() && probability <= 0.0,
         }
     }
 
-    /// Passes a diffuse event at a point with this rival, by which the walk leaves under the cosine `cos`; `diffuse` is its
-    /// probability, `reverse` that of the same event on the way back.
-    pub(crate) fn scatter(&mut self, at: Rival, cos: f64, diffuse: f64, reverse: f64) {
+    /// Passes a diffuse event at a point with this rival; `diffuse` is its probability, `reverse` that of the same event on
+    /// the way back.
+    pub(crate) fn scatter(&mut self, at: Rival, diffuse: f64, reverse: f64) {
         let rival = if at.first {
             Rival {
                 looked: at.looked / diffuse,
@@ -144,11 +120,7 @@ impl<'a> Launched<'a> {
                 ..at
             }
         };
-        self.left = Some(Left {
-            rival,
-            cos,
-            diffuse,
-        });
+        self.left = Some(rival);
         self.chain = Passed::nothing();
     }
 }

@@ -25,6 +25,7 @@ mod lookout;
 mod medium;
 mod mirrors;
 mod missing;
+mod neighbours;
 mod pass;
 mod path;
 mod picture;

@@ -6,6 +6,7 @@ use crate::allocation::Allocation;
 use crate::bridge::Launches;
 use crate::emitters::Start;
 use crate::evaluate::{Carrying, sent};
+use crate::neighbours::Neighbours;
 use crate::pass::{Channels, Effort, Passes};
 use crate::path::Path;
 use crate::random::Stream;
@@ -22,6 +23,8 @@ pub(crate) struct Sensors<'a> {
     pub receivers: &'a [Receiver],
     /// The same, to be asked which of them a point sees.
     pub targets: &'a Targets,
+    /// Those that share walks of their own.
+    pub neighbours: &'a [Neighbours],
     /// Walks of their own for one from the emitters.
     pub allocation: &'a Allocation,
 }

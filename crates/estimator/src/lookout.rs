@@ -116,6 +116,8 @@ pub(crate) struct Lookout {
     aimed: f64,
     /// Whether it is the sensor.
     sensor: bool,
+    /// Its share in what is found behind the first vertex, beside its neighbours.
+    share: f64,
 }
 
 impl Lookout {
@@ -139,6 +141,7 @@ impl Lookout {
             bridge: false,
             aimed: 0.0,
             sensor: true,
+            share: 1.0,
         }
     }
 
@@ -160,6 +163,11 @@ impl Lookout {
         self.aimed = density * PI / self.cos;
     }
 
+    /// Shares what is found behind the first vertex with neighbours.
+    pub(crate) fn share(&mut self, share: f64) {
+        self.share = share;
+    }
+
     /// How often walks from emitters come by a point that this walk has reached and are joined to the sensor there, or
     /// from there to this walk, for one walk from the sensor that looks at an emitter from it: multiplied by the density
     /// with which such a walk arrives, it competes with the probability of looking.
@@ -167,17 +175,15 @@ impl Lookout {
     /// The walk arrives under the cosine `cos`; a walk that came the other way would be scattered with the probability
     /// `diffuse`.
     pub(crate) fn coupling(&self, cos: f64, diffuse: f64, techniques: Techniques) -> f64 {
-        self.joined(cos, diffuse, techniques) + self.crossed(cos, diffuse, techniques)
+        self.joined(cos, techniques) + self.crossed(cos, diffuse, techniques)
     }
 
     /// Of those, the walks that are joined to the sensor.
-    pub(crate) fn joined(&self, cos: f64, diffuse: f64, techniques: Techniques) -> f64 {
-        if !self.sensor {
-            self.local * diffuse
-        } else if self.alone || !self.chain.is_straight() || techniques.local <= 0.0 {
+    fn joined(&self, cos: f64, techniques: Techniques) -> f64 {
+        if !self.sensor || self.alone || !self.chain.is_straight() || techniques.local <= 0.0 {
             0.0
         } else {
-            techniques.local * self.apart(cos) / self.chain.odds
+            techniques.local * self.apart(cos) * self.share / self.chain.odds
         }
     }
 
@@ -213,7 +219,7 @@ impl Lookout {
         techniques: Techniques,
     ) {
         // Between the last point and this one, both ways pass the same distances: only the ends differ.
-        self.local = self.joined(arriving_cos, reverse, techniques) / diffuse;
+        self.local = self.joined(arriving_cos, techniques) / diffuse;
         self.bridged = self.crossed(arriving_cos, reverse, techniques) / diffuse;
         self.bridge = self.sensor;
         self.aimed = 0.0;

@@ -85,6 +85,8 @@ pub(crate) struct Vertex {
     pub probability: f64,
     /// Whether it is a flat mirror that can be looked into.
     pub flat: bool,
+    /// Whether what it scatters goes to the sensor's neighbours, too, by the path's shares.
+    pub shared: bool,
     /// True where the back of a one-sided surface was met: it neither reflects nor emits.
     pub black: bool,
     /// For a walk from an emitter: the techniques that compete with joining this point to a sensor.
@@ -106,10 +108,14 @@ pub(crate) struct Path<'a> {
     pub candidates: Candidates,
     /// Mirrors and panes on the ways to them.
     pub steps: Vec<Step>,
+    /// Each neighbour's share in what the walk finds behind its first vertex, where that is shared.
+    pub shares: Vec<f64>,
+    /// Room to ask which of them see a vertex.
+    pub seen: Vec<bool>,
 }
 
 impl Path<'_> {
-    /// Forgets everything.
+    /// Forgets everything but the shares, which hold for a whole walk.
     pub(crate) fn clear(&mut self) {
         self.vertices.clear();
         self.connections.clear();

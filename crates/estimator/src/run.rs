@@ -1,6 +1,6 @@
 //! A run: replicas taken further in steps until a stopping rule holds.
 
-use crate::allocation::{Allocation, Sharing};
+use crate::allocation::{Allocation, Sharing, Stations};
 use crate::choose::{blind_spots, erratic, techniques};
 use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
@@ -10,6 +10,7 @@ use crate::gather::Aims;
 use crate::ledger::Ledger;
 use crate::local::targets;
 use crate::medium::Medium;
+use crate::neighbours::{Neighbours, memberships};
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
 use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
@@ -220,9 +221,10 @@ fn run_with<const N: usize>(
         let side = settings.cell.unwrap_or(direct::SIDE);
         Cells::new(&scene.surfaces, &receivers, side)
     });
+    let panes = passes.media().any(|medium| medium.panes);
     let sight = techniques
         .gather
-        .then(|| Sight::new(&scene.surfaces, &emitters, &mut receivers));
+        .then(|| Sight::new(&scene.surfaces, &emitters, &mut receivers, panes));
     let known = match cells {
         // Counted like all other light.
         Some(_) => {
@@ -232,21 +234,40 @@ fn run_with<const N: usize>(
         None => exact::known::<N>(&passes, &channels, &receivers, sight.as_ref()),
     };
     let targets = targets(&scene.surfaces, &receivers);
+    let share = techniques.block > 0 && !panes;
     let aims = Aims::all(&passes, &receivers);
+    let memberships = match techniques.block {
+        0 => (0..receivers.len()).collect(),
+        _ => memberships(&scene.surfaces, &receivers),
+    };
     let allocation = match sharing {
         Sharing::Like(like) => like.clone(),
         _ if techniques.gather && techniques.local > 0.0 => {
             let exact = |sensor: usize| known[0].at(sensor, 0);
-            let seed = settings.seed;
-            Allocation::piloted(&passes, &receivers, &targets, &aims, exact, seed, sharing)
+            let stations = Stations {
+                receivers: &receivers,
+                targets: &targets,
+                aims: &aims,
+                memberships,
+                share,
+            };
+            Allocation::piloted(&passes, stations, exact, settings.seed, sharing)
         }
-        _ => Allocation::even(receivers.len()),
+        _ => Allocation::even(memberships),
     };
+    let neighbours = Neighbours::all(
+        &scene.surfaces,
+        &receivers,
+        &allocation.memberships,
+        allocation.times(),
+        share,
+    );
     let engine = Engine::<N> {
         passes,
         channels,
         receivers: &receivers,
         targets: &targets,
+        neighbours: &neighbours,
         allocation: &allocation,
         aims: &aims,
         cells: cells.as_ref(),

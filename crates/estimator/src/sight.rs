@@ -1,13 +1,13 @@
-//! What sensors see straight of emitting surfaces, where nothing stands before them: a form factor, not a sample.
+//! What sensors see straight of emitting surfaces, past little that stands before them: a form factor, not a sample.
 
-use crate::beam::form_factor;
+use crate::beam::{form_factor, form_factor_behind};
 use crate::emitters::Emitters;
 use crate::receiver::Receiver;
 use malus_geometry::Surfaces;
 use malus_scene::Material;
 use rayon::prelude::*;
 
-/// The patches of emitters that a sensor sees whole or not at all: one bit each.
+/// The patches of emitters of which it is known how much a sensor sees: one bit each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Seen {
     patches: u64,
@@ -29,20 +29,22 @@ impl Seen {
     }
 }
 
-/// The form factors from sensors to what they see whole.
+/// The form factors from sensors to what they see.
 pub(crate) struct Sight {
     /// One entry a sensor: the surface index of each emitter in sight, and the form factor to it.
     views: Vec<Vec<(u32, f64)>>,
 }
 
 impl Sight {
-    /// Looks at every patch of emitters from every sensor of irradiance, and tells each what it need not sample.
+    /// Looks at every patch of emitters from every sensor of irradiance, and tells each what it need not sample; with
+    /// `panes` in the scene, all that something stands before is to be sampled.
     pub(crate) fn new(
         surfaces: &Surfaces,
         emitters: &Emitters,
         receivers: &mut [Receiver],
+        panes: bool,
     ) -> Self {
-        let patches = Patches::new(surfaces, emitters);
+        let patches = Patches::new(surfaces, emitters, panes);
         let looked: Vec<(Seen, Vec<(u32, f64)>)> = receivers
             .par_iter()
             .map(|receiver| {
@@ -60,7 +62,7 @@ impl Sight {
         Self { views }
     }
 
-    /// Irradiance at a sensor that comes straight from what it sees whole, for emitters of these materials; unpolarised.
+    /// Irradiance at a sensor that comes straight from patches of which it is known how much it sees, for emitters of these materials; unpolarised.
     pub(crate) fn irradiance(&self, sensor: usize, materials: &[Material]) -> f64 {
         let exitance = |surface: u32| {
             let emission = materials[surface as usize].emission.as_ref();
@@ -80,10 +82,15 @@ struct Patches<'a> {
     triangles: Vec<Vec<u32>>,
     /// Whether every emitting triangle belongs to one.
     complete: bool,
+    /// How much may stand before a patch.
+    hidden: usize,
 }
 
+/// Triangles that may stand before a patch of which it is to be known how much is seen.
+const HIDDEN: usize = 64;
+
 impl<'a> Patches<'a> {
-    fn new(surfaces: &'a Surfaces, emitters: &'a Emitters<'a>) -> Self {
+    fn new(surfaces: &'a Surfaces, emitters: &'a Emitters<'a>, panes: bool) -> Self {
         let mut triangles = vec![Vec::new(); emitters.patches().len()];
         let mut complete = true;
         for &triangle in emitters.triangles() {
@@ -97,6 +104,7 @@ impl<'a> Patches<'a> {
             emitters,
             triangles,
             complete,
+            hidden: if panes { 0 } else { HIDDEN },
         }
     }
 
@@ -111,33 +119,55 @@ impl<'a> Patches<'a> {
             .enumerate()
         {
             let first = view.len();
-            for &triangle in triangles {
-                let factor = self.form_factor(receiver, triangle);
+            let mut add = |triangle: u32, factor: f64| {
                 let surface = self.surfaces.surface(triangle);
                 match view[first..].iter_mut().find(|entry| entry.0 == surface) {
                     Some(entry) => entry.1 += factor,
                     None if factor > 0.0 => view.push((surface, factor)),
                     None => {}
                 }
-            }
-            let dark = view.len() == first;
-            if dark || self.surfaces.sees_whole(receiver.origin, &facet.hull) {
+            };
+            let lit: Vec<u32> = triangles
+                .iter()
+                .copied()
+                .filter(|&triangle| self.form_factor(receiver, triangle, &[]) > Some(0.0))
+                .collect();
+            // In the dark nothing needs to be known of what stands before it.
+            let before = match lit[..] {
+                [] => Some(Vec::new()),
+                _ => self
+                    .surfaces
+                    .before(receiver.origin, &facet.hull, self.hidden),
+            };
+            let Some(before) = before else {
+                continue;
+            };
+            let factors: Option<Vec<f64>> = lit
+                .iter()
+                .map(|&triangle| self.form_factor(receiver, triangle, &before))
+                .collect();
+            if let Some(factors) = factors {
                 seen.patches |= 1 << patch;
-            } else {
-                view.truncate(first);
+                for (&triangle, factor) in lit.iter().zip(factors) {
+                    add(triangle, factor);
+                }
             }
         }
         seen.all = self.complete && seen.patches.count_ones() as usize == self.triangles.len();
         (seen, view)
     }
 
-    /// 0 behind the triangle and below the horizon.
-    fn form_factor(&self, receiver: &Receiver, triangle: u32) -> f64 {
+    /// That of a triangle past others; 0 behind it and below the horizon, `None` where it is seen in too many parts.
+    fn form_factor(&self, receiver: &Receiver, triangle: u32, before: &[u32]) -> Option<f64> {
         let corners = self.surfaces.triangle(triangle).vertices;
         let above = (receiver.origin - corners[0]).dot(self.surfaces.normal(triangle));
         if above <= 0.0 {
-            return 0.0;
+            return Some(0.0);
         }
-        form_factor(receiver.origin, receiver.normal, &corners)
+        if before.is_empty() {
+            return Some(form_factor(receiver.origin, receiver.normal, &corners));
+        }
+        let before = before.iter().map(|&it| self.surfaces.triangle(it).vertices);
+        form_factor_behind(receiver.origin, receiver.normal, &corners, before)
     }
 }

@@ -15,6 +15,7 @@ use crate::launched::{Launched, Rival};
 use crate::lookout::Lookout;
 use crate::medium::{Medium, Meeting};
 use crate::mirrors::Viewer;
+use crate::neighbours::Member;
 use crate::path::{Event, Path, Vertex};
 use crate::random::{Purpose, Uniforms};
 use crate::receiver::Receiver;
@@ -44,6 +45,8 @@ pub(crate) struct Walk<'a> {
     aim: Option<&'a Aim<'a>>,
     /// Walks from emitters that a walk from a sensor is joined to.
     partners: Option<Partners<'a>>,
+    /// The sensor among those with which a walk from it is shared.
+    member: Option<Member<'a>>,
     role: Role<'a>,
     /// Where a walk from a sensor was mirrored at its first vertex, which is followed when the rest of it has ended.
     branch: Option<Branch>,
@@ -104,6 +107,7 @@ impl<'a> Walk<'a> {
             depth: 0,
             aim: None,
             partners: None,
+            member: None,
             role: Role::Launched(Launched::new(start)),
             branch: None,
             truncated: false,
@@ -118,6 +122,7 @@ impl<'a> Walk<'a> {
         receiver: &Receiver,
         aim: Option<&'a Aim<'a>>,
         partners: Option<Partners<'a>>,
+        member: Option<Member<'a>>,
     ) -> Self {
         let Receiver { origin, normal, .. } = *receiver;
         let (direction, lookout) = if receiver.is_irradiance() {
@@ -143,6 +148,7 @@ impl<'a> Walk<'a> {
             depth: 0,
             aim,
             partners,
+            member,
             role: Role::Looking(lookout),
             branch: None,
             truncated: false,
@@ -169,6 +175,7 @@ impl<'a> Walk<'a> {
             depth: 0,
             aim: Some(aim),
             partners: None,
+            member: None,
             role: Role::Aimed(Aimed {
                 triangle,
                 by_chance: cos / PI,
@@ -264,6 +271,7 @@ impl<'a> Walk<'a> {
             event: Event::Absorbed,
             probability: 1.0,
             flat: meeting.facet.is_some(),
+            shared: false,
             black: meeting.black(),
             rival: Rival::default(),
         };
@@ -279,7 +287,23 @@ impl<'a> Walk<'a> {
                 launched.go(hit.distance);
                 odds.diffuse *= self.techniques.launched(meeting.cover);
             }
-            Role::Looking(lookout) => lookout.go(hit.distance),
+            Role::Looking(lookout) => {
+                lookout.go(hit.distance);
+                if let (Some(member), 1) = (self.member, self.depth)
+                    && odds.diffuse > 0.0
+                    && !meeting.cover.polarises_scattering()
+                {
+                    vertex.shared = true;
+                    let Path { seen, shares, .. } = path;
+                    lookout.share(member.share(
+                        self.medium.surfaces,
+                        vertex.position,
+                        normal,
+                        seen,
+                        shares,
+                    ));
+                }
+            }
         }
         vertex.diffuse = odds.diffuse;
         if odds.diffuse > 0.0 && meeting.cover.scatters() {
@@ -299,6 +323,7 @@ impl<'a> Walk<'a> {
                     onward: mirrored(),
                     matrix: mirror,
                     emission: 0.0,
+                    shared: false,
                     connections: 0..0,
                     bridges: 0..0,
                     lit: 0..0,
@@ -324,8 +349,7 @@ impl<'a> Walk<'a> {
             match &mut self.role {
                 Role::Aimed(_) => {}
                 Role::Launched(launched) => {
-                    let cos = self.direction.dot(normal);
-                    launched.scatter(vertex.rival, cos, odds.diffuse, out);
+                    launched.scatter(vertex.rival, odds.diffuse, out);
                 }
                 Role::Looking(lookout) => {
                     lookout.scatter(
@@ -395,8 +419,7 @@ impl<'a> Walk<'a> {
                 if lookout.is_sensor()
                     && let Some(partners) = self.partners
                 {
-                    let joined = lookout.joined(cos, 1.0, self.techniques);
-                    self.cross(path, vertex, partners, joined);
+                    self.cross(path, vertex, partners);
                 }
             }
         }

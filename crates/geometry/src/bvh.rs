@@ -15,7 +15,7 @@ mod targets;
 mod wide;
 
 use crate::Mesh;
-use crate::crossing::Line;
+use crate::crossing::{Beside, Line};
 use frame::{Frame, rounded_up};
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
@@ -291,6 +291,7 @@ impl Tree {
                     question,
                     seen,
                     single,
+                    beside: |place: usize| Beside::new(from, &self.corners[place], self.slack),
                     between: |to, place: usize, surely| {
                         surely && whole(self.triangles[place])
                             || self
@@ -307,7 +308,7 @@ impl Tree {
     pub(crate) fn all(
         &self,
         enters: impl Fn(DVec3, DVec3) -> bool,
-        passes: impl Fn(u32) -> bool,
+        mut passes: impl FnMut(u32) -> bool,
     ) -> bool {
         let Frame { centre, scale, .. } = self.frame;
         let world = |corner: Vec3A| corner.as_dvec3() / scale + centre;

@@ -120,6 +120,41 @@ impl Line {
     }
 }
 
+/// A point beside a triangle: whether a segment from there stays on its side of the triangle's plane.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Beside {
+    /// Of the length of twice the area.
+    normal: DVec3,
+    corner: DVec3,
+    /// Heights over the plane, times that length: of the point, and beyond which no slack reaches.
+    height: f64,
+    margin: f64,
+}
+
+impl Beside {
+    #[inline(always)]
+    pub fn new(point: DVec3, triangle: &[DVec3; 3], slack: f64) -> Self {
+        let normal = Triangle {
+            vertices: *triangle,
+        }
+        .area_vector();
+        Self {
+            normal,
+            corner: triangle[0],
+            height: normal.dot(point - triangle[0]),
+            margin: 2.0 * slack * normal.length(),
+        }
+    }
+
+    /// True only where [`Line::crossing`] finds nothing between the point and `to`: both stand off the plane on one side.
+    #[inline(always)]
+    pub fn keeps_off(&self, to: DVec3) -> bool {
+        let height = self.normal.dot(to - self.corner);
+        (self.height > self.margin && height > self.margin)
+            || (self.height < -self.margin && height < -self.margin)
+    }
+}
+
 /// Whether all three lie beyond `slack` on the same side of zero.
 #[inline]
 fn on_one_side([a, b, c]: [f64; 3], slack: f64) -> bool {
@@ -175,6 +210,30 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn what_stays_beside_a_triangle_does_not_cross_it(seed: u64) {
+            let mut uniform = Uniform(seed);
+            const SLACK: f64 = 1e-9;
+            let triangle = [(); 3].map(|()| uniform.point());
+            let normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalize();
+            // Points that hardly leave the plane, on either side of it.
+            let mut near = || {
+                let place = uniform.point();
+                let height = 10f64.powf(-10.0 + 3.0 * uniform.next()) * (uniform.next() - 0.5).signum();
+                place + (height - (place - triangle[0]).dot(normal)) * normal
+            };
+            let (from, to) = (near(), near());
+            let line = Line::new(from, (to - from).normalize(), SLACK, 10.0);
+            let distance = line.crossing(&triangle);
+            let crossed = distance.is_some_and(|it| it > 0.0 && it < from.distance(to));
+            let heights = [from, to].map(|it| (it - triangle[0]).dot(normal));
+            if Beside::new(from, &triangle, SLACK).keeps_off(to) {
+                prop_assert!(!crossed && heights[0] * heights[1] > 0.0);
+            } else {
+                prop_assert!(heights[0] * heights[1] < 0.0 || heights[0].abs().min(heights[1].abs()) < 2.1 * SLACK);
+            }
+        }
+
         #[test]
         fn one_of_two_triangles_is_met_at_their_common_edge_even_without_slack(seed: u64) {
             let mut uniform = Uniform(seed);

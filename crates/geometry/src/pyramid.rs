@@ -1,4 +1,4 @@
-//! Whether a point sees the whole of a polygon.
+//! What stands between a point and a polygon.
 
 use crate::Surfaces;
 use glam::DVec3;
@@ -74,22 +74,29 @@ impl<'a> Pyramid<'a> {
 }
 
 impl Surfaces {
-    /// Whether every point of a flat convex polygon is seen from `apex` (in m), whichever side of it that lies on.
+    /// The triangles that may hide something of a flat convex polygon from `apex` (in m), whichever side of it that lies
+    /// on; `None` where there are more than `most` of them, or the apex lies in the polygon's plane.
     ///
     /// What lies within [`tolerance`](Self::tolerance) of the polygon's plane or touches the pyramid from outside does not
-    /// count. Exact where the answer
-    /// is yes; where it is no, all may be seen nevertheless: triangles are told apart from the pyramid by the planes of
-    /// either.
+    /// count. Where there is none, every point of the polygon is seen; where there are some, all may be seen nevertheless:
+    /// triangles are told apart from the pyramid by the planes of either.
     #[must_use]
-    pub fn sees_whole(&self, apex: DVec3, corners: &[DVec3]) -> bool {
-        let Some(pyramid) = Pyramid::new(apex, corners) else {
-            return false;
-        };
+    pub fn before(&self, apex: DVec3, corners: &[DVec3], most: usize) -> Option<Vec<u32>> {
+        let pyramid = Pyramid::new(apex, corners)?;
         let (slack, tolerance) = (self.slack(), self.tolerance());
-        self.boxes().all(
+        let mut found = Vec::new();
+        let complete = self.boxes().all(
             |least, most| !pyramid.misses_box(least, most),
-            |triangle| pyramid.misses(&self.triangle(triangle).vertices, slack, tolerance),
-        )
+            |triangle| {
+                if !pyramid.misses(&self.triangle(triangle).vertices, slack, tolerance) {
+                    found.push(triangle);
+                }
+                found.len() <= most
+            },
+        );
+        // The same in every tree.
+        found.sort_unstable();
+        complete.then_some(found)
     }
 }
 
@@ -105,6 +112,10 @@ mod tests {
         DVec3::new(0.6, 0.6, 1.0),
         DVec3::new(0.4, 0.6, 1.0),
     ];
+
+    fn sees_whole(room: &Surfaces, apex: DVec3, corners: &[DVec3]) -> bool {
+        room.before(apex, corners, 0).is_some()
+    }
 
     /// The unit cube seen from inside, with a small box in it.
     fn room(least: DVec3, most: DVec3) -> Surfaces {
@@ -122,14 +133,14 @@ mod tests {
     fn a_lamp_in_the_ceiling_is_seen_past_a_box_beside_the_way_and_not_behind_one_in_it() {
         let floor = DVec3::new(0.5, 0.5, 1e-9);
         let beside = room(DVec3::new(0.61, 0.2, 0.0), DVec3::new(0.9, 0.8, 1.0));
-        assert!(beside.sees_whole(floor, &SQUARE));
+        assert!(sees_whole(&beside, floor, &SQUARE));
         let within = room(DVec3::new(0.52, 0.2, 0.4), DVec3::new(0.9, 0.8, 0.6));
-        assert!(!within.sees_whole(floor, &SQUARE));
+        assert!(!sees_whole(&within, floor, &SQUARE));
         // A thread across the pyramid, no corner of it inside.
         let thread = room(DVec3::new(0.1, 0.5, 0.5), DVec3::new(0.9, 0.500_1, 0.500_1));
-        assert!(!thread.sees_whole(floor, &SQUARE));
+        assert!(!sees_whole(&thread, floor, &SQUARE));
         let reversed: Vec<DVec3> = SQUARE.into_iter().rev().collect();
-        assert!(beside.sees_whole(floor, &reversed) && !within.sees_whole(floor, &reversed));
+        assert!(sees_whole(&beside, floor, &reversed) && !sees_whole(&within, floor, &reversed));
     }
 
     #[test]
@@ -145,7 +156,7 @@ mod tests {
                 room.visible(apex, DVec3::new(u, v, 1.0 - 1e-9))
             };
             let all = (0..200).map(seen).filter(|&s| s).count() == 200;
-            if room.sees_whole(apex, &SQUARE) {
+            if sees_whole(&room, apex, &SQUARE) {
                 whole += 1;
                 assert!(all, "{apex} sees no whole square past {corner}");
             } else if !all {
@@ -161,6 +172,6 @@ mod tests {
     #[test]
     fn a_point_in_the_plane_of_a_polygon_sees_nothing_of_it() {
         let room = room(DVec3::splat(0.1), DVec3::splat(0.2));
-        assert!(!room.sees_whole(DVec3::new(0.2, 0.5, 1.0), &SQUARE));
+        assert!(!sees_whole(&room, DVec3::new(0.2, 0.5, 1.0), &SQUARE));
     }
 }

@@ -1,12 +1,11 @@
 //! Light along a walk from a sensor.
 
 use super::chain::Chain;
-use super::{bridged, emitted, passed_at};
+use super::{Reading, Readings, bridged, emitted, passed_at};
 use crate::gather::Part;
 use crate::path::{Connection, Event, Path, Vertex};
 use crate::receiver::Receiver;
 use crate::variation::Variation;
-use malus_optics::{Sensor, Stokes};
 
 /// What a sensor reads of a walk that was started from it.
 #[derive(Debug)]
@@ -17,9 +16,9 @@ pub(crate) struct Gathering<'r, const N: usize> {
     /// Divided by the probability of every event on the way: apart, the two would leave the range of numbers on a long
     /// walk, one to either side.
     chain: Chain<N>,
-    sum: Stokes<N, Sensor>,
-    /// S0 of light seen in mirrors, and of emitters met by chance.
-    found: [f64; 2],
+    readings: Readings<N>,
+    /// Which of the readings light is added to.
+    shared: bool,
 }
 
 impl<'r, const N: usize> Gathering<'r, N> {
@@ -30,21 +29,19 @@ impl<'r, const N: usize> Gathering<'r, N> {
             receiver,
             place,
             chain: Chain::ToSensor(None),
-            sum: Stokes::unpolarised(0.0),
-            found: [0.0; 2],
+            readings: [Reading::nothing(); 2],
+            shared: false,
         }
     }
 
-    /// The irradiance read, in the sensor's basis.
+    /// What was read.
     #[must_use]
-    pub(crate) fn sum(&self) -> [f64; N] {
-        self.sum.components()
+    pub(crate) fn readings(&self) -> &Readings<N> {
+        &self.readings
     }
 
-    /// Of S0, what was seen in mirrors and what was met by chance.
-    #[must_use]
-    pub(crate) fn found(&self) -> [f64; 2] {
-        self.found
+    fn reading(&mut self) -> &mut Reading<N> {
+        &mut self.readings[usize::from(self.shared)]
     }
 
     /// Light met along a piece of a walk.
@@ -58,6 +55,7 @@ impl<'r, const N: usize> Gathering<'r, N> {
     /// Light that the sensor sees before the walk has left it.
     fn look(&mut self, path: &Path, variation: &Variation) {
         self.chain = Chain::ToSensor(None);
+        self.shared = false;
         for connection in &path.connections {
             let chain = self.chain;
             self.connect(path, connection, chain, 1.0, variation);
@@ -75,12 +73,14 @@ impl<'r, const N: usize> Gathering<'r, N> {
                 let light = emitted(direction, crate::emitters::emitted_state(material));
                 let read = self.chain.pass(self.receiver, direction, light)
                     * (emission.exitance * vertex.emission * self.receiver.per_exitance);
-                self.found[1] += read.i();
-                self.sum += read;
+                let reading = self.reading();
+                reading.found[1] += read.i();
+                reading.sum += read;
             }
             if vertex.black {
                 return;
             }
+            self.shared |= vertex.shared;
             let scattering = material.optics.scattering();
             for connection in &path.connections[vertex.connections.clone()] {
                 let chain =
@@ -127,13 +127,15 @@ impl<'r, const N: usize> Gathering<'r, N> {
             }
             let toward = bridge.toward;
             let chain = self.chain.behind(self.receiver, optics, vertex, toward);
-            self.sum += chain.pass(self.receiver, -toward, light) * (strength * flux);
+            let read = chain.pass(self.receiver, -toward, light) * (strength * flux);
+            self.reading().sum += read;
         }
         if even > 0.0 {
             let chain = self
                 .chain
                 .behind(self.receiver, optics, vertex, vertex.normal);
-            self.sum += chain.pass(self.receiver, -vertex.normal, None) * (strength * even);
+            let read = chain.pass(self.receiver, -vertex.normal, None) * (strength * even);
+            self.reading().sum += read;
         }
     }
 
@@ -152,9 +154,10 @@ impl<'r, const N: usize> Gathering<'r, N> {
         let light = emitted(connection.leaving, connection.state);
         let strength = weight * connection.irradiance * variation.emitted(connection.origin);
         let read = chain.pass(self.receiver, connection.leaving, light) * strength;
+        let reading = self.reading();
         if connection.mirrored {
-            self.found[0] += read.i();
+            reading.found[0] += read.i();
         }
-        self.sum += read;
+        reading.sum += read;
     }
 }

@@ -5,13 +5,12 @@
 //! them, so many variants cost little more than one.
 
 use super::chain::Chain;
-use super::{bridged, emitted, passed_at};
+use super::{Reading, Readings, bridged, emitted, passed_at};
 use crate::emitters::state_of;
 use crate::gather::Part;
 use crate::path::{Bridge, Connection, Event, Path, Vertex};
 use crate::receiver::Receiver;
 use crate::spread::{Spread, Surface};
-use malus_optics::{Sensor, Stokes};
 
 /// What a sensor reads of a walk in every variant.
 #[derive(Debug)]
@@ -21,15 +20,9 @@ pub(crate) struct Strands<'r, const N: usize> {
     /// The first of its places among the fluxes that walks from the emitters bring.
     first: usize,
     strands: Vec<Strand<N>>,
-    reading: Vec<Reading<N>>,
-}
-
-/// What is read in one variant.
-#[derive(Debug, Clone, Copy)]
-struct Reading<const N: usize> {
-    sum: Stokes<N, Sensor>,
-    /// S0 of light seen in mirrors, and of emitters met by chance.
-    found: [f64; 2],
+    readings: Vec<Readings<N>>,
+    /// Which of its readings each variant's light is added to.
+    shared: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -48,24 +41,23 @@ struct Member {
 impl<'r, const N: usize> Strands<'r, N> {
     /// Nothing read yet; `first` is the first of its places among the fluxes that walks from the emitters bring.
     pub(crate) fn new(receiver: &'r Receiver, spread: &'r Spread, first: usize) -> Self {
-        let nothing = Reading {
-            sum: Stokes::unpolarised(0.0),
-            found: [0.0; 2],
-        };
         Self {
             receiver,
             spread,
             first,
             strands: Vec::new(),
-            reading: vec![nothing; spread.count()],
+            readings: vec![[Reading::nothing(); 2]; spread.count()],
+            shared: false,
         }
     }
 
-    /// What each variant has read: the light, and of S0 what was seen in mirrors and what was met by chance.
-    pub(crate) fn readings(&self) -> impl Iterator<Item = ([f64; N], [f64; 2])> {
-        self.reading
-            .iter()
-            .map(|it| (it.sum.components(), it.found))
+    /// What each variant has read.
+    pub(crate) fn readings(&self) -> &[Readings<N>] {
+        &self.readings
+    }
+
+    fn reading(&mut self, variant: usize) -> &mut Reading<N> {
+        &mut self.readings[variant][usize::from(self.shared)]
     }
 
     /// Light met along a piece of a walk.
@@ -92,6 +84,7 @@ impl<'r, const N: usize> Strands<'r, N> {
             chain: Chain::ToSensor(None),
             members: (0..self.spread.count()).map(member).collect(),
         };
+        self.shared = false;
         for connection in &path.connections {
             self.connect(path, connection, all.chain, &all.members);
         }
@@ -108,6 +101,7 @@ impl<'r, const N: usize> Strands<'r, N> {
         if vertex.black {
             return false;
         }
+        self.shared |= vertex.shared;
         let polarises = surface.kind(0).polarises_scattering();
         let mirrored = matches!(vertex.event, Event::Mirror | Event::Through);
         if surface.has_kinds() && (mirrored || polarises) {
@@ -184,7 +178,7 @@ impl<'r, const N: usize> Strands<'r, N> {
                 * (vertex.emission * self.receiver.per_exitance);
             for member in &strand.members {
                 let read = read * (member.weight * surface.exitance[member.variant]);
-                let reading = &mut self.reading[member.variant];
+                let reading = &mut self.readings[member.variant][usize::from(self.shared)];
                 reading.found[1] += read.i();
                 reading.sum += read;
             }
@@ -220,7 +214,7 @@ impl<'r, const N: usize> Strands<'r, N> {
                     weight *= self.spread.strength(step, variant);
                 }
                 let read = read * weight;
-                let reading = &mut self.reading[variant];
+                let reading = self.reading(variant);
                 if connection.mirrored {
                     reading.found[0] += read.i();
                 }
@@ -239,7 +233,8 @@ impl<'r, const N: usize> Strands<'r, N> {
         let read = chain.pass(self.receiver, -vertex.normal, None);
         for member in &strand.members {
             let weight = member.weight * surface.scattering[member.variant] * lit[member.variant];
-            self.reading[member.variant].sum += read * (weight * self.receiver.per_exitance);
+            let read = read * (weight * self.receiver.per_exitance);
+            self.reading(member.variant).sum += read;
         }
     }
 
@@ -256,7 +251,7 @@ impl<'r, const N: usize> Strands<'r, N> {
             let weight = member.weight * surface.scattering[member.variant] * flux;
             let read = chain.pass(self.receiver, -bridge.toward, light)
                 * (weight * self.receiver.per_exitance);
-            self.reading[member.variant].sum += read;
+            self.reading(member.variant).sum += read;
         }
     }
 

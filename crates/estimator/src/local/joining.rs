@@ -1,7 +1,7 @@
 //! Joining the vertices of walks from the emitters to sensors.
 
 use super::Sensors;
-use crate::bridge::{self, Landings};
+use crate::bridge::Landings;
 use crate::emitters::Start;
 use crate::evaluate::joined;
 use crate::medium::{Medium, Step};
@@ -139,6 +139,10 @@ impl Joining<'_> {
         if self.sensors.receivers.is_empty() {
             return;
         }
+        // What has been scattered before walks from the sensors are joined to, unless nothing else can have found it.
+        if self.techniques.gather && !vertex.rival.first && !vertex.rival.alone {
+            return;
+        }
         let cover = &medium.covers[vertex.material as usize];
         let polarises = cover.polarises_scattering();
         let diffuse = |direction| {
@@ -146,38 +150,55 @@ impl Joining<'_> {
             cover.diffuse(cos, sin2)
         };
         let even = diffuse(vertex.normal);
+        let Sensors {
+            receivers,
+            neighbours,
+            allocation,
+            ..
+        } = *self.sensors;
         let mut steps: Vec<Step> = Vec::new();
         let seen = seen(medium, vertex.position, vertex.normal, self.sensors.targets);
-        for (sensor, receiver) in self.sensors.receivers.iter().enumerate() {
+        let ways = |sensor: usize, steps: &mut Vec<Step>| {
             steps.clear();
-            let way = if seen.as_ref().is_none_or(|seen| seen[sensor]) {
-                straight(
-                    medium,
-                    vertex.position,
-                    vertex.normal,
-                    receiver,
-                    seen.is_some(),
-                    &mut steps,
-                )
-            } else {
-                None
-            };
-            if let Some(way) = way {
+            if !seen.as_ref().is_none_or(|seen| seen[sensor]) {
+                return None;
+            }
+            let clear = seen.is_some();
+            let Vertex {
+                position, normal, ..
+            } = *vertex;
+            straight(medium, position, normal, &receivers[sensor], clear, steps)
+        };
+        // The density with which walks from all neighbours of a sensor come here, for each that shares them.
+        let memberships = &allocation.memberships;
+        let mut reached = vec![0.0; neighbours.len()];
+        if self.techniques.gather && !polarises {
+            for sensor in 0..receivers.len() {
+                if neighbours[memberships[sensor]].share()
+                    && let Some(way) = ways(sensor, &mut steps)
+                {
+                    let times = f64::from(allocation.times()[sensor]);
+                    reached[memberships[sensor]] += times * way.coupling * way.odds;
+                }
+            }
+        }
+        for (sensor, receiver) in receivers.iter().enumerate() {
+            if let Some(way) = ways(sensor, &mut steps) {
                 let mut weight = way.coupling;
                 if self.techniques.gather {
+                    let shared = reached[memberships[sensor]];
+                    let coupling = if shared > 0.0 {
+                        shared
+                    } else {
+                        f64::from(allocation.times()[sensor]) * way.coupling * way.odds
+                    };
                     let diffuse = if polarises {
                         diffuse(way.direction)
                     } else {
                         even
                     };
-                    let coupling = way.coupling * way.odds;
-                    let rivalry = self.sensors.allocation.rivalry(sensor);
-                    weight *= vertex.rival.weight(
-                        coupling,
-                        diffuse,
-                        rivalry,
-                        bridge::worth(self.techniques.block, rivalry),
-                    );
+                    let rivalry = allocation.rivalry(sensor);
+                    weight *= vertex.rival.weight(coupling, diffuse, rivalry);
                 }
                 let arrival = Arrival {
                     receiver,

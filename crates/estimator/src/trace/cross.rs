@@ -8,15 +8,8 @@ use crate::random::Purpose;
 use malus_optics::angle_of_incidence;
 
 impl<'a> Walk<'a> {
-    /// Joins the point where the walk first scatters to walks from the emitters; the density `joined` is that of walks from
-    /// emitters that are joined to the sensor from there.
-    pub(super) fn cross(
-        &self,
-        path: &mut Path<'a>,
-        vertex: &mut Vertex,
-        partners: Partners<'a>,
-        joined: f64,
-    ) {
+    /// Joins the point where the walk first scatters to walks from the emitters.
+    pub(super) fn cross(&self, path: &mut Path<'a>, vertex: &mut Vertex, partners: Partners<'a>) {
         let Some(chance) = bridge::taking_part(self.uniforms, self.depth) else {
             return;
         };
@@ -28,7 +21,6 @@ impl<'a> Walk<'a> {
             normal: vertex.normal,
             cell: surfaces.cell(vertex.position),
             onward: vertex.diffuse,
-            joined,
             walks: self.techniques.bridged,
         };
         let share = 1.0 / (chance * partners.walks as f64);

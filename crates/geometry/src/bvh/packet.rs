@@ -10,6 +10,7 @@ use super::lanes::{Lanes, Work};
 use super::rays::{Crossings, Rays, Slabs};
 use super::targets::{PACKET, Packet, Question};
 use super::wide::{LEAF, OPEN, Wide};
+use crate::crossing::Beside;
 use glam::DVec3;
 
 /// Numbers of the targets of a packet, by axis.
@@ -36,7 +37,7 @@ fn dot(a: &Sixteen3, b: &Sixteen3) -> [f64; PACKET] {
 }
 
 /// Which targets see a point within the scene's bounding sphere, each in front of the other.
-pub(super) struct Sight<'a, S, B> {
+pub(super) struct Sight<'a, S, P, B> {
     pub wide: &'a Wide,
     pub frame: &'a Frame,
     pub question: &'a Question<'a>,
@@ -44,12 +45,18 @@ pub(super) struct Sight<'a, S, B> {
     pub seen: &'a mut [bool],
     /// Whether a place is seen that single precision cannot tell from the point, or that lies outside the sphere.
     pub single: S,
-    /// Whether the triangle at a place among the leaves lies between the point and another; told where it surely does if
-    /// it exists there.
+    /// What is known of the point and the triangle at a place among the leaves.
+    pub beside: P,
+    /// Whether such a triangle lies between the point and another; told where it surely does if it exists there.
     pub between: B,
 }
 
-impl<S: FnMut(DVec3) -> bool, B: FnMut(DVec3, usize, bool) -> bool> Work for Sight<'_, S, B> {
+impl<S, P, B> Work for Sight<'_, S, P, B>
+where
+    S: FnMut(DVec3) -> bool,
+    P: Fn(usize) -> Beside,
+    B: FnMut(DVec3, usize, bool) -> bool,
+{
     type Output = ();
 
     #[inline(always)]
@@ -63,7 +70,12 @@ impl<S: FnMut(DVec3) -> bool, B: FnMut(DVec3, usize, bool) -> bool> Work for Sig
     }
 }
 
-impl<S: FnMut(DVec3) -> bool, B: FnMut(DVec3, usize, bool) -> bool> Sight<'_, S, B> {
+impl<S, P, B> Sight<'_, S, P, B>
+where
+    S: FnMut(DVec3) -> bool,
+    P: Fn(usize) -> Beside,
+    B: FnMut(DVec3, usize, bool) -> bool,
+{
     #[inline(always)]
     fn look<L: Lanes>(&mut self, lanes: L, open: &mut [(u32, u32)]) {
         let &Question {
@@ -162,12 +174,21 @@ impl<S: FnMut(DVec3) -> bool, B: FnMut(DVec3, usize, bool) -> bool> Sight<'_, S,
                     triangles &= triangles - 1;
                     let (may, surely) = crossings.crossed(lanes, rays, triangle);
                     let mut may = may & mask & alive;
+                    if may == 0 {
+                        continue;
+                    }
+                    let place = leaf.first as usize + triangle;
+                    let beside = (self.beside)(place);
                     while may != 0 {
                         let lane = may.trailing_zeros() as usize & 15;
                         may &= may - 1;
-                        let place = leaf.first as usize + triangle;
                         let surely = surely >> lane & 1 == 1;
-                        if (self.between)(packet.place(lane), place, surely) {
+                        let to = packet.place(lane);
+                        // Mostly the surface that the point lies on, from which single precision cannot tell it.
+                        if beside.keeps_off(to) {
+                            continue;
+                        }
+                        if (self.between)(to, place, surely) {
                             alive &= !(1 << lane);
                         }
                     }

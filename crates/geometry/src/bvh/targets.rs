@@ -77,6 +77,12 @@ impl Targets {
         self.len
     }
 
+    /// Which of them lie near one another, up to sixteen at a time.
+    pub fn clusters(&self) -> impl Iterator<Item = &[u32]> {
+        let packets = self.packets.iter();
+        packets.map(|packet| &packet.indices[..packet.count])
+    }
+
     /// Whether there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
