@@ -123,6 +123,11 @@ impl Allocation {
         }
     }
 
+    /// Whether it is for so many sensors.
+    pub(crate) fn fits(&self, sensors: usize) -> bool {
+        self.parts.len() == sensors
+    }
+
     /// Largest relative error that so many walks from the emitters in all are expected to leave.
     pub(crate) fn expected_error(&self, launched: u64) -> f64 {
         (self.variance / launched as f64).sqrt()
@@ -200,6 +205,7 @@ impl Allocation {
             channels: Channels::of_intensity(),
             receivers,
             targets,
+            share,
             neighbours: Neighbours::all(
                 passes.main.surfaces,
                 receivers,
@@ -343,6 +349,7 @@ struct Pilot<'a> {
     channels: Channels,
     receivers: &'a [Receiver],
     targets: &'a Targets,
+    share: bool,
     neighbours: Vec<Neighbours>,
     aims: &'a [Aims<'a>],
     /// Walks from each sensor in one round.
@@ -369,7 +376,7 @@ impl Pilot<'_> {
             &Sensors {
                 receivers: self.receivers,
                 targets: self.targets,
-                neighbours: &self.neighbours,
+                share: self.share,
                 allocation: &self.tried,
             },
             stream,

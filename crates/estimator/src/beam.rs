@@ -127,7 +127,10 @@ pub(crate) fn form_factor_behind(
     for triangle in triangles {
         let mut shade: Vec<DVec3> = triangle.iter().map(|&corner| corner - point).collect();
         clip(&mut shade, down, NEAREST * depth);
-        clip(&mut shade, -down, -depth);
+        // Corners in the polygon's plane are not to be cut off by their rounding.
+        clip(&mut shade, -down, -depth * (1.0 + NEAREST));
+        // Between corners that stand together there is no plane.
+        drop_doubles(&mut shade);
         if shade.len() > 2 {
             parts = parts
                 .into_iter()
@@ -144,7 +147,8 @@ pub(crate) fn form_factor_behind(
     Some(parts.iter().map(|part| share(part, normal)).sum())
 }
 
-/// What is nearer to a point than this share of a polygon's distance stands beside the polygon, as far as directions tell.
+/// What is nearer to a point than this share of a polygon's distance stands beside the polygon, as far as directions tell, and
+/// what is as near to its plane stands in it.
 const NEAREST: f64 = 1e-9;
 
 /// Sine of the angle below which a corner lies in a plane through the point.
@@ -247,6 +251,7 @@ fn clip(edges: &mut Vec<DVec3>, normal: DVec3, height: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::{DQuat, EulerRot};
     use malus_geometry::{Facets, Mesh, Surfaces, shape};
     use std::f64::consts::PI;
 
@@ -357,5 +362,42 @@ mod tests {
             [(x, -1.0), (x + 0.002, -1.0), (x + 0.001, 2.0)].map(|(x, y)| DVec3::new(x, y, 0.9))
         });
         assert_eq!(form_factor_behind(eye, DVec3::Z, &lamp, comb), None);
+    }
+
+    #[test]
+    fn blockers_with_corners_in_the_plane_of_a_polygon_hide_what_they_hide_beside_it() {
+        let mut state = 1_u64;
+        let mut uniform = || {
+            state = state
+                .wrapping_mul(0x5851_F42D_4C95_7F2D)
+                .wrapping_add(0x1405_7B7E_F767_814F);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        for _ in 0..4000 {
+            let turned = DQuat::from_euler(EulerRot::XYZ, uniform(), uniform(), uniform());
+            let mut at = |z: f64| turned * DVec3::new(uniform(), uniform(), z);
+            let lamp = [at(0.7), at(0.7), at(0.7)];
+            let eye = at(0.0);
+            let heights = [0.2, 0.7, 0.9];
+            let blocker = |first: usize| {
+                // Never wholly in the plane, where it hides nothing.
+                [0, 1, 2].map(|corner| heights[(first >> (2 * corner) & 3).min(2)])
+            };
+            let heights = blocker((uniform() * 64.0) as usize);
+            if heights == [0.7; 3] {
+                continue;
+            }
+            let mut at = |z: f64| turned * DVec3::new(uniform(), uniform(), z);
+            let corners = heights.map(&mut at);
+            let moved = corners.map(|corner| corner + 1e-8 * (at(0.0) - corner));
+            let up = turned * DVec3::Z;
+            let factor =
+                |blocker| form_factor_behind(eye, up, &lamp, [blocker].into_iter()).unwrap();
+            let (exact, near) = (factor(corners), factor(moved));
+            assert!(
+                (exact - near).abs() < 1e-6,
+                "{exact} {near}: {corners:?} before {lamp:?} from {eye}"
+            );
+        }
     }
 }

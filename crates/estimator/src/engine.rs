@@ -30,7 +30,8 @@ pub(crate) struct Engine<'a, const N: usize> {
     pub receivers: &'a [Receiver],
     /// The sensors, to be asked which of them a point sees.
     pub targets: &'a Targets,
-    /// Those that share walks of their own.
+    /// Whether sensors share walks of their own, and those that do.
+    pub share: bool,
     pub neighbours: &'a [Neighbours],
     /// Walks from each sensor, relative to those from the emitters.
     pub allocation: &'a Allocation,
@@ -109,7 +110,7 @@ impl<const N: usize> Engine<'_, N> {
         Sensors {
             receivers: self.receivers,
             targets: self.targets,
-            neighbours: self.neighbours,
+            share: self.share,
             allocation: self.allocation,
         }
     }

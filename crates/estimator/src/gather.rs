@@ -86,7 +86,7 @@ pub(crate) fn gather<const N: usize>(
                 uniforms: stream.branch(sensor as u64).walk(index),
                 aim: aims[sensor].main.as_ref(),
                 partners: of_main,
-                member: neighbours.share().then_some(member),
+                member: neighbours.share(place).then_some(member),
             };
             let mut sums = Sums {
                 neighbours: sums,

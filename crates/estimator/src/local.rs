@@ -6,7 +6,6 @@ use crate::allocation::Allocation;
 use crate::bridge::Launches;
 use crate::emitters::Start;
 use crate::evaluate::{Carrying, sent};
-use crate::neighbours::Neighbours;
 use crate::pass::{Channels, Effort, Passes};
 use crate::path::Path;
 use crate::random::Stream;
@@ -23,8 +22,8 @@ pub(crate) struct Sensors<'a> {
     pub receivers: &'a [Receiver],
     /// The same, to be asked which of them a point sees.
     pub targets: &'a Targets,
-    /// Those that share walks of their own.
-    pub neighbours: &'a [Neighbours],
+    /// Whether neighbours share walks of their own.
+    pub share: bool,
     /// Walks of their own for one from the emitters.
     pub allocation: &'a Allocation,
 }

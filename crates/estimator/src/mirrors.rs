@@ -60,7 +60,10 @@ const LEAST_ONWARD_OF_SENSOR: f64 = 0.25;
 /// Probability with which a vertex looks into mirrors, relative to the share of diffuse light that they reflect.
 const LOOK: f64 = 2.0;
 
-/// Least of that probability.
+/// The same for a sensor, where neighbours do not share what is found.
+const LOOK_OF_SENSOR: f64 = 12.0;
+
+/// Least of that probability for a vertex.
 const LEAST_LOOK: f64 = 0.05;
 
 /// The flat mirrors of a scene, as one model has them.
@@ -355,7 +358,10 @@ impl Mirrors {
     }
 
     fn look_odds(&self, viewer: &Viewer) -> f64 {
-        if viewer.sensor { 1.0 } else { self.look }
+        match viewer.sensor {
+            true => (LOOK_OF_SENSOR / LOOK * self.look).min(1.0),
+            false => self.look,
+        }
     }
 
     /// One facet for the end of a chain, with its probability among all.

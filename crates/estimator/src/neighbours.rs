@@ -14,11 +14,9 @@ use std::f64::consts::PI;
 pub(crate) struct Neighbours {
     /// Which sensors they are.
     pub members: Vec<usize>,
-    /// Where each stands, its normal, and how many walks it takes in a round.
+    /// Where each stands, its normal, and how many walks it takes in a round; no normal of one that does not share.
     places: Vec<(DVec3, DVec3, u32)>,
     targets: Targets,
-    /// Whether they do share.
-    share: bool,
 }
 
 /// One of them.
@@ -77,8 +75,8 @@ impl Neighbours {
                     enclosed,
                     ..
                 } = receivers[sensor];
-                // One inside a solid sees nothing.
-                let facing = if enclosed { DVec3::ZERO } else { normal };
+                let takes_part = share && receivers[sensor].is_irradiance() && !enclosed;
+                let facing = if takes_part { normal } else { DVec3::ZERO };
                 (origin, facing, times[sensor])
             };
             let places: Vec<_> = members.iter().map(place).collect();
@@ -86,21 +84,16 @@ impl Neighbours {
             Self {
                 targets: surfaces.targets(&targets),
                 places,
-                share: share && members.len() > 1,
                 members,
             }
         };
         members.into_iter().map(neighbours).collect()
     }
 
-    /// Walks that all of them take in a round, as far as they share any.
+    /// Walks in a round that serve the same sensor.
     pub(crate) fn round(&self) -> u32 {
-        let all = self.places.iter().map(|it| it.2);
-        if self.share {
-            all.sum()
-        } else {
-            all.max().unwrap_or(1)
-        }
+        let sharing = (0..self.places.len()).filter(|&place| self.share(place));
+        sharing.map(|place| self.times(place)).sum::<u32>().max(1)
     }
 
     /// Walks that one of them takes in a round.
@@ -108,9 +101,9 @@ impl Neighbours {
         self.places[place].2
     }
 
-    /// Whether what one finds goes to others.
-    pub(crate) fn share(&self) -> bool {
-        self.share
+    /// Whether what one finds goes to others, and what they find to it.
+    pub(crate) fn share(&self, place: usize) -> bool {
+        self.places[place].1 != DVec3::ZERO
     }
 }
 

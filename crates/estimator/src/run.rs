@@ -241,7 +241,7 @@ fn run_with<const N: usize>(
         _ => memberships(&scene.surfaces, &receivers),
     };
     let allocation = match sharing {
-        Sharing::Like(like) => like.clone(),
+        Sharing::Like(like) if like.fits(receivers.len()) => like.clone(),
         _ if techniques.gather && techniques.local > 0.0 => {
             let exact = |sensor: usize| known[0].at(sensor, 0);
             let stations = Stations {
@@ -267,6 +267,7 @@ fn run_with<const N: usize>(
         channels,
         receivers: &receivers,
         targets: &targets,
+        share,
         neighbours: &neighbours,
         allocation: &allocation,
         aims: &aims,

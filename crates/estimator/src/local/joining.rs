@@ -152,7 +152,6 @@ impl Joining<'_> {
         let even = diffuse(vertex.normal);
         let Sensors {
             receivers,
-            neighbours,
             allocation,
             ..
         } = *self.sensors;
@@ -171,10 +170,10 @@ impl Joining<'_> {
         };
         // The density with which walks from all neighbours of a sensor come here, for each that shares them.
         let memberships = &allocation.memberships;
-        let mut reached = vec![0.0; neighbours.len()];
+        let mut reached = vec![0.0; memberships.iter().max().map_or(0, |last| last + 1)];
         if self.techniques.gather && !polarises {
             for sensor in 0..receivers.len() {
-                if neighbours[memberships[sensor]].share()
+                if self.sensors.share
                     && let Some(way) = ways(sensor, &mut steps)
                 {
                     let times = f64::from(allocation.times()[sensor]);
