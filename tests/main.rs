@@ -20,6 +20,7 @@ mod polarisation;
 mod direct;
 // Where the flux goes.
 mod ledger;
+mod neighbours;
 // Every technique weighed against every other: nothing is lost, nothing counted twice.
 mod complete;
 // Sheets that light passes.

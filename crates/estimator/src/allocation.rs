@@ -25,7 +25,7 @@ const PARTS: u32 = 64;
 const MOST: u32 = 8 * PARTS;
 
 /// Most walks that a sensor takes in a round, of which one of its neighbours takes one.
-const TIMES: u32 = 8;
+const TIMES: u32 = 2;
 
 /// Share with which the pilot weighs the two kinds of walk against each other, in parts.
 const TRIED: u32 = PARTS / 8;

@@ -127,28 +127,27 @@ impl<'a> Patches<'a> {
                     None => {}
                 }
             };
-            let lit: Vec<u32> = triangles
+            let whole: Vec<(u32, f64)> = triangles
                 .iter()
-                .copied()
-                .filter(|&triangle| self.form_factor(receiver, triangle, &[]) > Some(0.0))
+                .map(|&triangle| (triangle, self.form_factor(receiver, triangle)))
+                .filter(|&(_, factor)| factor > 0.0)
                 .collect();
             // In the dark nothing needs to be known of what stands before it.
-            let before = match lit[..] {
+            let before = match whole[..] {
                 [] => Some(Vec::new()),
                 _ => self
                     .surfaces
                     .before(receiver.origin, &facet.hull, self.hidden),
             };
-            let Some(before) = before else {
-                continue;
+            let left = |&(triangle, factor): &(u32, f64), before: &[u32]| match before {
+                [] => Some((triangle, factor)),
+                _ => Some((triangle, self.left(receiver, triangle, before)?)),
             };
-            let factors: Option<Vec<f64>> = lit
-                .iter()
-                .map(|&triangle| self.form_factor(receiver, triangle, &before))
-                .collect();
-            if let Some(factors) = factors {
+            let seen_of_it: Option<Vec<(u32, f64)>> =
+                before.and_then(|before| whole.iter().map(|it| left(it, &before)).collect());
+            if let Some(seen_of_it) = seen_of_it {
                 seen.patches |= 1 << patch;
-                for (&triangle, factor) in lit.iter().zip(factors) {
+                for (triangle, factor) in seen_of_it {
                     add(triangle, factor);
                 }
             }
@@ -157,16 +156,19 @@ impl<'a> Patches<'a> {
         (seen, view)
     }
 
-    /// That of a triangle past others; 0 behind it and below the horizon, `None` where it is seen in too many parts.
-    fn form_factor(&self, receiver: &Receiver, triangle: u32, before: &[u32]) -> Option<f64> {
+    /// 0 behind the triangle and below the horizon.
+    fn form_factor(&self, receiver: &Receiver, triangle: u32) -> f64 {
         let corners = self.surfaces.triangle(triangle).vertices;
         let above = (receiver.origin - corners[0]).dot(self.surfaces.normal(triangle));
         if above <= 0.0 {
-            return Some(0.0);
+            return 0.0;
         }
-        if before.is_empty() {
-            return Some(form_factor(receiver.origin, receiver.normal, &corners));
-        }
+        form_factor(receiver.origin, receiver.normal, &corners)
+    }
+
+    /// The same of what is seen past others; `None` where these leave too many parts.
+    fn left(&self, receiver: &Receiver, triangle: u32, before: &[u32]) -> Option<f64> {
+        let corners = self.surfaces.triangle(triangle).vertices;
         let before = before.iter().map(|&it| self.surfaces.triangle(it).vertices);
         form_factor_behind(receiver.origin, receiver.normal, &corners, before)
     }
