@@ -193,6 +193,7 @@ impl Allocation {
         let walks = (GATHERED / free.len().max(1) as u64).max(1);
         let pilot = Pilot {
             walks,
+            taking: receivers.iter().filter(|it| !it.enclosed).count(),
             // The main model of the first variant alone, and of that S0 alone: the walks are the same.
             passes: Passes {
                 main: Medium {
@@ -352,8 +353,9 @@ struct Pilot<'a> {
     share: bool,
     neighbours: Vec<Neighbours>,
     aims: &'a [Aims<'a>],
-    /// Walks from each sensor in one round.
+    /// Walks from each sensor in one round, and how many sensors take any.
     walks: u64,
+    taking: usize,
     tried: Allocation,
 }
 
@@ -406,11 +408,13 @@ impl Pilot<'_> {
                 &mut sums,
             );
         }
-        let look = if self.passes.main.mirrors.is_empty() {
-            0.0
-        } else {
-            LOOK
-        };
+        let rays = effort.rays as f64;
+        let begun = (self.walks * self.taking as u64) as f64;
+        let mirrors = &self.passes.main.mirrors;
+        // Every other ray of a walk from a sensor leads to a vertex.
+        let looks =
+            mirrors.odds(true) * begun + mirrors.odds(false) * (0.5 * rays - begun).max(0.0);
+        let joins = |effort: Effort| JOIN * effort.joins as f64;
         let means = |sums: &[f64], walks: u64| {
             let first = sums.iter().step_by(count);
             first.map(|sum| sum / walks as f64).collect()
@@ -418,9 +422,11 @@ impl Pilot<'_> {
         Round {
             launched: means(&launched, LAUNCHED),
             gathered: means(&gathered, self.walks),
-            cost_launched: RAY * local.rays as f64 + JOIN * local.joins as f64,
-            // Every other ray of a walk from a sensor leads to a vertex that may look into mirrors.
-            cost_gathered: (RAY + 0.5 * look) * effort.rays as f64 + BRIDGE * effort.bridges as f64,
+            cost_launched: RAY * local.rays as f64 + joins(local),
+            cost_gathered: RAY * rays
+                + LOOK * looks
+                + joins(effort)
+                + BRIDGE * effort.bridges as f64,
         }
     }
 }

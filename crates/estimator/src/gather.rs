@@ -283,6 +283,7 @@ impl<'w> Way<'w> {
             aim.and_then(|aim| Walk::aimed(medium, techniques, uniforms, &receiver, aim));
         let mut effort = Effort {
             bridges: partners.map_or(0, |it| it.landings.len() as u64),
+            joins: member.map_or(0, |it| it.neighbours.members.len() as u64),
             ..Effort::default()
         };
         let mut take = |mut walk: Walk<'w>| {

@@ -192,6 +192,15 @@ impl Mirrors {
         self.facets.list().is_empty()
     }
 
+    /// Probability with which a `sensor`, or a vertex of a walk, looks into mirrors, if there are any.
+    pub(crate) fn odds(&self, sensor: bool) -> f64 {
+        match sensor {
+            _ if self.is_empty() => 0.0,
+            true => (LOOK_OF_SENSOR / LOOK * self.look).min(1.0),
+            false => self.look,
+        }
+    }
+
     /// Diffuse light that is mirrored by what cannot be looked into, as a share of what meets all surfaces.
     pub(crate) fn unseen(&self) -> f64 {
         self.unseen
@@ -358,10 +367,7 @@ impl Mirrors {
     }
 
     fn look_odds(&self, viewer: &Viewer) -> f64 {
-        match viewer.sensor {
-            true => (LOOK_OF_SENSOR / LOOK * self.look).min(1.0),
-            false => self.look,
-        }
+        self.odds(viewer.sensor)
     }
 
     /// One facet for the end of a chain, with its probability among all.

@@ -34,7 +34,7 @@ impl Checkpoints {
     const TELLING: u64 = 16;
 
     /// Walks a replica of which the spread tells the error at all.
-    const FEWEST: u64 = 2;
+    const FEWEST: u64 = 1;
 
     /// By how much less the error has to be expected than it may be, so that hardly a run goes on.
     const MARGIN: f64 = 2.5;
@@ -449,5 +449,6 @@ mod tests {
         assert_eq!(first(Some(2.5), 2.0, 3), [4, 16, 20]);
         assert_eq!(first(Some(2.49), 2.0, 3), [8, 16, 20]);
         assert_eq!(first(Some(3.6), 2.0, 3), [2, 16, 20]);
+        assert_eq!(first(Some(5.0), 2.0, 3), [1, 16, 20]);
     }
 }

@@ -116,10 +116,15 @@ impl Joining<'_> {
                     if self.techniques.block > 0 {
                         landings.push(&medium, vertex, fluxes, self.uniforms, depth);
                     }
-                    effort.joins += self.sensors.receivers.len() as u64;
-                    self.join(&medium, vertex, depth, |sensor, arrival| {
-                        add(sensor, fluxes, arrival);
-                    });
+                    // What has been scattered before is found where walks from sensors are joined to it, or by these alone,
+                    // unless nothing but this can find it.
+                    let rival = &vertex.rival;
+                    if !self.techniques.gather || rival.first || rival.alone {
+                        effort.joins += self.sensors.receivers.len() as u64;
+                        self.join(&medium, vertex, depth, |sensor, arrival| {
+                            add(sensor, fluxes, arrival);
+                        });
+                    }
                 }
             }
             if !more {
@@ -137,10 +142,6 @@ impl Joining<'_> {
         mut add: impl FnMut(usize, &Arrival),
     ) {
         if self.sensors.receivers.is_empty() {
-            return;
-        }
-        // What has been scattered before walks from the sensors are joined to, unless nothing else can have found it.
-        if self.techniques.gather && !vertex.rival.first && !vertex.rival.alone {
             return;
         }
         let cover = &medium.covers[vertex.material as usize];
