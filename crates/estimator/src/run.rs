@@ -52,13 +52,13 @@ impl Checkpoints {
         Self { first }
     }
 
-    /// The first checkpoint after `taken` walks a replica: four to the octave, as soon as they tell enough.
+    /// The first checkpoint after `taken` walks a replica: one to the octave, and four as soon as they tell enough.
     fn after(self, taken: u64) -> u64 {
         if taken < self.first {
             return self.first;
         }
         if taken < Self::TELLING {
-            return Self::TELLING;
+            return 2 * taken;
         }
         let spacing = 1 << (taken.ilog2() - 2);
         (taken / spacing + 1) * spacing
@@ -432,7 +432,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn checkpoints_stand_four_to_the_octave_and_one_before_them_where_little_is_asked() {
+    fn checkpoints_stand_four_to_the_octave_and_one_before_where_little_is_asked() {
         let first = |goal, expected: f64, count: usize| -> Vec<u64> {
             let checkpoints = Checkpoints::new(goal, |walks| expected / (walks as f64).sqrt());
             let mut taken = 0;
@@ -445,10 +445,10 @@ mod tests {
         let all = [16, 20, 24, 28, 32, 40, 48, 56, 64, 80];
         assert_eq!(first(None, 1.0, 10), all);
         assert_eq!(first(Some(0.3), 1.0, 10), all);
-        // Where less is expected to do, a run is judged once more, earlier.
-        assert_eq!(first(Some(2.5), 2.0, 3), [4, 16, 20]);
+        // Where less is expected to do, a run is judged earlier, too.
+        assert_eq!(first(Some(2.5), 2.0, 3), [4, 8, 16]);
         assert_eq!(first(Some(2.49), 2.0, 3), [8, 16, 20]);
-        assert_eq!(first(Some(3.6), 2.0, 3), [2, 16, 20]);
-        assert_eq!(first(Some(5.0), 2.0, 3), [1, 16, 20]);
+        assert_eq!(first(Some(3.6), 2.0, 3), [2, 4, 8]);
+        assert_eq!(first(Some(5.0), 2.0, 3), [1, 2, 4]);
     }
 }
