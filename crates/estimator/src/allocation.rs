@@ -25,7 +25,7 @@ const PARTS: u32 = 64;
 const MOST: u32 = 8 * PARTS;
 
 /// Most walks that a sensor takes in a round, of which one of its neighbours takes one.
-const TIMES: u32 = 2;
+const TIMES: u32 = 4;
 
 /// Share with which the pilot weighs the two kinds of walk against each other, in parts.
 const TRIED: u32 = PARTS / 8;
@@ -38,7 +38,7 @@ const GATHERED: u64 = 16;
 
 /// By how much less walks from the emitters err in a run, whose points are many and spread evenly. Far from walls their
 /// light is smooth; it is not where walks from the sensors are needed.
-const EVEN: f64 = 6.0;
+const EVEN: f64 = 3.0;
 
 /// Walks from one sensor that tell as much of its variance as the mean over all sensors does.
 const TELLING: f64 = 16.0;
