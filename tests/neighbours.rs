@@ -87,7 +87,7 @@ fn what_neighbours_share_is_what_each_gathers_alone() {
     assert_alike(
         &shared,
         &read("estimator = 'gather'\nsamples = 65536"),
-        1e-2,
+        2e-2,
     );
 }
 
