@@ -384,7 +384,10 @@ mod tests {
                 [0, 1, 2].map(|corner| heights[(first >> (2 * corner) & 3).min(2)])
             };
             let heights = blocker((uniform() * 64.0) as usize);
-            if heights == [0.7; 3] {
+            if heights
+                .iter()
+                .all(|height: &f64| height.total_cmp(&0.7).is_eq())
+            {
                 continue;
             }
             let mut at = |z: f64| turned * DVec3::new(uniform(), uniform(), z);
