@@ -4,10 +4,9 @@
 //! scatters serves every other that sees this point, each by its density over the sum of all densities with which the
 //! walks of the sensors come there (re-use of paths; Bekaert, Sbert & Halton 2002, with the balance heuristic).
 
-use crate::receiver::Receiver;
+use crate::receiver::{Receiver, coupling};
 use glam::DVec3;
 use malus_geometry::{Surfaces, Targets};
-use std::f64::consts::PI;
 
 /// Sensors that share their walks.
 #[derive(Debug)]
@@ -152,11 +151,4 @@ impl Member<'_> {
         }
         shares[place]
     }
-}
-
-/// cos θ cos θ′/(π r²) between a surface and a sensor, in 1/m²; 0 where one is behind the other.
-fn coupling(segment: DVec3, normal: DVec3, facing: DVec3) -> f64 {
-    let cosines = segment.dot(normal).max(0.0) * (-segment.dot(facing)).max(0.0);
-    let square = segment.length_squared();
-    cosines / (PI * square * square)
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use malus_geometry::Surfaces;
 use malus_optics::{Basis, Sensor as SensorRole};
 use malus_scene::{Frame, Quantity, Scene, Sensor, SensorPoint};
-use std::f64::consts::FRAC_1_PI;
+use std::f64::consts::{FRAC_1_PI, PI};
 
 /// One sensor point.
 #[derive(Debug, Clone, Copy)]
@@ -81,6 +81,19 @@ impl Receiver {
             Frame::Incidence => Basis::in_plane_of_incidence(direction, self.normal, self.axis),
             Frame::Fixed => Basis::new(direction, self.axis),
         }
+    }
+}
+
+/// cos θ cos θ′/(π r²) between a surface and a sensor `segment` away that faces along a normal of its own, in 1/m²; 0 where one
+/// is behind the other.
+pub(crate) fn coupling(segment: DVec3, normal: DVec3, facing: DVec3) -> f64 {
+    let cosines = segment.dot(normal).max(0.0) * (-segment.dot(facing)).max(0.0);
+    let square = segment.length_squared();
+    // At the sensor itself there is neither a direction nor a distance.
+    if cosines > 0.0 {
+        cosines / (PI * square * square)
+    } else {
+        0.0
     }
 }
 

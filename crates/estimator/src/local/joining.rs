@@ -9,7 +9,7 @@ use crate::mirrors::{Target, Viewer};
 use crate::pass::Effort;
 use crate::path::{Path, Vertex};
 use crate::random::Uniforms;
-use crate::receiver::Receiver;
+use crate::receiver::{Receiver, coupling};
 use crate::techniques::Techniques;
 use crate::trace::Walk;
 use crate::variation::Variation;
@@ -171,12 +171,11 @@ impl Joining<'_> {
         };
         // The density with which walks from all neighbours of a sensor come here, for each that shares them.
         let memberships = &allocation.memberships;
-        let mut reached = vec![0.0; memberships.iter().max().map_or(0, |last| last + 1)];
-        if self.techniques.gather && !polarises {
+        let share = self.sensors.share && self.techniques.gather && !polarises;
+        let mut reached = vec![0.0; if share { receivers.len() } else { 0 }];
+        if share {
             for sensor in 0..receivers.len() {
-                if self.sensors.share
-                    && let Some(way) = ways(sensor, &mut steps)
-                {
+                if let Some(way) = ways(sensor, &mut steps) {
                     let times = f64::from(allocation.times()[sensor]);
                     reached[memberships[sensor]] += times * way.coupling * way.odds;
                 }
@@ -186,9 +185,8 @@ impl Joining<'_> {
             if let Some(way) = ways(sensor, &mut steps) {
                 let mut weight = way.coupling;
                 if self.techniques.gather {
-                    let shared = reached[memberships[sensor]];
-                    let coupling = if shared > 0.0 {
-                        shared
+                    let coupling = if share {
+                        reached[memberships[sensor]]
                     } else {
                         f64::from(allocation.times()[sensor]) * way.coupling * way.odds
                     };
@@ -298,13 +296,11 @@ pub(super) fn straight(
         return None;
     }
     let segment = receiver.origin - from;
-    let leaving = segment.dot(normal);
-    let arriving = -segment.dot(receiver.normal);
-    if leaving <= 0.0 || arriving <= 0.0 {
+    let coupling = coupling(segment, normal, receiver.normal);
+    if coupling <= 0.0 {
         return None;
     }
-    let square = segment.length_squared();
-    let direction = segment / square.sqrt();
+    let direction = segment / segment.length();
     let odds = if clear {
         1.0
     } else {
@@ -314,7 +310,7 @@ pub(super) fn straight(
     };
     Some(Joined {
         direction,
-        coupling: leaving * arriving / (PI * square * square),
+        coupling,
         odds,
     })
 }
