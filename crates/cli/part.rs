@@ -18,7 +18,7 @@ use std::io::{Read, Write};
 use std::path::Path;
 
 /// First line of a file; the number rises whenever what follows it is laid out anew.
-const FORM: &str = "malus state 7\n";
+const FORM: &str = "malus state 8\n";
 
 /// What is said of a file that is not as it was written.
 const DAMAGED: &str =
@@ -388,7 +388,7 @@ mod tests {
                 failure: None,
             };
             let state = State::new(Shard::WHOLE);
-            let error = summed.put(&state).expect_err("no room for 64 replicas");
+            let error = summed.put(&state).expect_err("no room for its replicas");
             let error = error
                 .downcast_ref::<std::io::Error>()
                 .map(std::io::Error::kind);

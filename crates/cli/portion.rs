@@ -12,7 +12,7 @@ use malus_scene::Settings;
 /// Options of what is computed of a run, and of how it survives what ends the program.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Portion {
-    /// Compute part I of N, 1 ≤ I ≤ N ≤ 64, and write it to DIR for `malus merge`. The run has to be stopped by its number of
+    /// Compute part I of N, 1 ≤ I ≤ N ≤ 32, and write it to DIR for `malus merge`. The run has to be stopped by its number of
     /// samples
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     pub shard: Option<String>,
@@ -166,7 +166,7 @@ mod tests {
             (
                 "9/8",
                 stops(Some(64), None, None),
-                "1 ≤ I ≤ N ≤ 64, found \"9/8\"",
+                "1 ≤ I ≤ N ≤ 32, found \"9/8\"",
             ),
             (
                 "3/8",

@@ -32,7 +32,7 @@ pub struct Cluster {
     #[arg(long, value_name = "SCHEDULER", requires = "shards", conflicts_with_all = ["shard", "resume", "threads"])]
     pub submit: Option<Scheduler>,
 
-    /// Number of shards of --submit, 1 to 64
+    /// Number of shards of --submit, 1 to 32
     #[arg(
         long,
         value_name = "N",
@@ -75,12 +75,12 @@ impl Cluster {
     /// Number of shards.
     ///
     /// # Errors
-    /// It is none from 1 to 64.
+    /// It is none from 1 to 32.
     pub fn count(&self) -> Result<u32> {
         let text = self.shards.as_deref().unwrap_or_default();
         let shard = text.parse().ok().and_then(|n| Shard::new(1, n).ok());
         let shard = shard.ok_or_else(|| {
-            anyhow!("--shards {text}: must be a whole number from 1 to 64, found {text:?}")
+            anyhow!("--shards {text}: must be a whole number from 1 to 32, found {text:?}")
         })?;
         Ok(shard.count())
     }

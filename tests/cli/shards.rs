@@ -167,7 +167,7 @@ fn merged_shards_have_the_bytes_of_a_run_in_one_piece() {
 fn the_most_shards_and_the_fewest_give_the_same_bytes() {
     let folder = Folder::new(ROOM.as_bytes(), &[]);
     folder.run("whole", &["--samples", "300"]);
-    let all: Vec<String> = (1..=64).map(|index| format!("{index}/64")).collect();
+    let all: Vec<String> = (1..=32).map(|index| format!("{index}/32")).collect();
     let all: Vec<&str> = all.iter().map(String::as_str).collect();
     shards(&folder, "many", &all, &["--samples", "300"]);
     shards(&folder, "one", &["1/1"], &["--samples", "300"]);

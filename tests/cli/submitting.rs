@@ -166,7 +166,7 @@ fn what_cannot_be_submitted_is_told() {
     );
     assert_told(
         &told(&["--shards", "0"], 2),
-        &["--shards 0: must be a whole number from 1 to 64"],
+        &["--shards 0: must be a whole number from 1 to 32"],
     );
     assert_told(&told(&[], 2), &["--shards"]);
     let words = ["--shards", "2", "--relative-error", "0.1"];

@@ -93,7 +93,7 @@ fn merged_shards_of_a_study_have_the_bytes_of_one_piece() {
 fn the_most_shards_of_a_study_give_the_same_bytes() {
     let folder = folder(STUDY, &[]);
     status(&folder, "whole", &["--samples", "64"]);
-    let all: Vec<String> = (1..=64).map(|index| format!("{index}/64")).collect();
+    let all: Vec<String> = (1..=32).map(|index| format!("{index}/32")).collect();
     let all: Vec<&str> = all.iter().map(String::as_str).collect();
     shards(&folder, "out", &all, &["--samples", "64"]);
     folder.malus(&["merge", "out"]);

@@ -6,8 +6,8 @@ use malus_scene::Scene;
 /// Runs a scene.
 const SEEDS: u64 = 4000;
 
-/// Student's t for 63 degrees of freedom at 97.5 %.
-pub const T: f64 = 1.998_340_5;
+/// Student's t for 31 degrees of freedom at 97.5 %.
+pub const T: f64 = 2.039_513_4;
 
 /// Value and standard error of something that is read.
 type Quantity = fn(&Reading) -> (f64, f64);

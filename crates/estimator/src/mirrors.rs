@@ -58,21 +58,27 @@ const LEAST_ONWARD: f64 = 0.05;
 const LEAST_ONWARD_OF_SENSOR: f64 = 0.25;
 
 /// Probability with which a vertex looks into mirrors, relative to the share of diffuse light that they reflect.
-const LOOK: f64 = 2.0;
+const LOOK: f64 = 0.5;
 
-/// The same for a sensor, where neighbours do not share what is found.
-const LOOK_OF_SENSOR: f64 = 12.0;
+/// The same for a sensor, where neighbours do not share what is found, times the root of what a look costs there in facets.
+const LOOK_OF_SENSOR: f64 = 54.0;
+
+/// What a look costs beside that of the facets, in terms of one.
+const COST_OF_LOOK: f64 = 14.0;
 
 /// Least of that probability for a vertex.
 const LEAST_LOOK: f64 = 0.05;
+
+/// Least of that probability for a sensor.
+const LEAST_LOOK_OF_SENSOR: f64 = 0.3;
 
 /// The flat mirrors of a scene, as one model has them.
 pub(crate) struct Mirrors {
     facets: Facets,
     /// Reflectors of each, those of its largest triangle.
     covers: Vec<Cover>,
-    /// Probability with which a vertex of a walk looks into mirrors.
-    look: f64,
+    /// Probability with which a sensor, and a vertex of a walk, looks into mirrors.
+    looks: [f64; 2],
     /// Diffuse light that is mirrored by what belongs to no facet, as a share of what meets all surfaces.
     unseen: f64,
     /// Radius of the cone of directions about an image, where it stands, in m.
@@ -146,9 +152,14 @@ impl Mirrors {
             .map(|facet| covers[surfaces.surface(facet.triangle) as usize].clone())
             .collect();
         let share = |part: f64| if area > 0.0 { part / area } else { 0.0 };
+        let dear = (COST_OF_LOOK + of_facets.len() as f64).sqrt();
+        let looks = [LOOK_OF_SENSOR / dear, LOOK].map(|times| times * share(seen));
         let mut mirrors = Self {
             unseen: share(unseen),
-            look: (LOOK * share(seen)).clamp(LEAST_LOOK, 1.0),
+            looks: [
+                looks[0].clamp(LEAST_LOOK_OF_SENSOR, 1.0),
+                looks[1].clamp(LEAST_LOOK, 1.0),
+            ],
             facets,
             covers: of_facets,
             spread: images::SPREAD * radius,
@@ -196,8 +207,8 @@ impl Mirrors {
     pub(crate) fn odds(&self, sensor: bool) -> f64 {
         match sensor {
             _ if self.is_empty() => 0.0,
-            true => (LOOK_OF_SENSOR / LOOK * self.look).min(1.0),
-            false => self.look,
+            true => self.looks[0],
+            false => self.looks[1],
         }
     }
 

@@ -47,12 +47,13 @@ impl Checkpoints {
         while first < Self::TELLING
             && goal.is_none_or(|goal| Self::MARGIN * expected_error(first) > goal)
         {
-            first *= 2;
+            first += 1 << first.ilog2().saturating_sub(1);
         }
         Self { first }
     }
 
-    /// The first checkpoint after `taken` walks a replica: one to the octave, and four as soon as they tell enough.
+    /// The first checkpoint after `taken` walks a replica: one to the octave, and four as soon as they tell enough; the first of
+    /// all may lie between.
     fn after(self, taken: u64) -> u64 {
         if taken < self.first {
             return self.first;
@@ -447,7 +448,7 @@ mod tests {
         assert_eq!(first(Some(0.3), 1.0, 10), all);
         // Where less is expected to do, a run is judged earlier, too.
         assert_eq!(first(Some(2.5), 2.0, 3), [4, 8, 16]);
-        assert_eq!(first(Some(2.49), 2.0, 3), [8, 16, 20]);
+        assert_eq!(first(Some(2.49), 2.0, 3), [6, 12, 24]);
         assert_eq!(first(Some(3.6), 2.0, 3), [2, 4, 8]);
         assert_eq!(first(Some(5.0), 2.0, 3), [1, 2, 4]);
     }

@@ -228,18 +228,18 @@ mod tests {
         for replica in state.walks.replicas_mut() {
             replica.points = 16;
         }
-        assert_eq!(state.samples(), 1024);
+        assert_eq!(state.samples(), 512);
         assert_eq!(state.check(None), Ok(()));
         assert_eq!(state.check(Some(16)), Ok(()));
         let beyond = StateError::Beyond {
-            found: 1024,
-            asked: 960,
+            found: 512,
+            asked: 480,
         };
         assert_eq!(state.check(Some(15)), Err(beyond));
         let last = state.walks.replicas_mut().last().unwrap();
         last.points = 17;
         let uneven = StateError::Uneven {
-            id: 63,
+            id: REPLICAS - 1,
             found: 17,
             expected: 16,
         };
