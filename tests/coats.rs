@@ -67,7 +67,7 @@ fn a_coated_sphere_that_emits_has_its_exact_answer() {
         exitance = 1
         {sensors}
         [run]
-        samples = 131072"
+        samples = 65536"
     ));
     // Walks from the wall are common to all points, so the error of the mean is up to the mean of the errors.
     let mean = |of: &dyn Fn(&Reading) -> (f64, f64)| {

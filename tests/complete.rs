@@ -67,7 +67,7 @@ fn light_in_equilibrium_is_the_same_everywhere() {
         quantity = 'radiance'
         points = [[0.2, 0.5, 0.5], [0.9, 0.1, 0.1]]
         direction = [0.5, -0.3, 0.2]";
-    for (estimator, samples) in [("auto", 65_536), ("gather", 65_536)] {
+    for (estimator, samples) in [("auto", 16_384), ("gather", 32_768)] {
         let run = format!(
             "[run]\nestimator = '{estimator}'\nrepresentation = 'full'\nsamples = {samples}"
         );
@@ -225,8 +225,8 @@ fn a_point_source_is_a_tiny_ball() {
             samples = {samples}"
         ))
     };
-    let balls = by(&ball, "gather", 1_048_576);
-    for (one, other) in by(source, "auto", 262_144).iter().zip(balls) {
+    let balls = by(&ball, "gather", 262_144);
+    for (one, other) in by(source, "auto", 32_768).iter().zip(balls) {
         for c in 0..3 {
             // The ball covers less than a thousandth of what is seen, hides as much, and is a polyhedron.
             let model = 1.5e-3 * other.stokes[0];

@@ -23,9 +23,9 @@ fn a_coat_of_index_one_is_no_coat() {
     for rho in [0.0, 0.5, 0.9] {
         let coated = room(
             &format!("kind = 'coated'\nrho = {rho}\nn = 1"),
-            "samples = 32768",
+            "samples = 8192",
         );
-        let plain = room(&format!("rho = {rho}"), "samples = 32768\nseed = 2");
+        let plain = room(&format!("rho = {rho}"), "samples = 8192\nseed = 2");
         assert_same(&format!("rho = {rho}"), &coated, &plain, 1e-2);
     }
 }
@@ -64,7 +64,7 @@ fn a_coat_over_white_loses_nothing() {
             exitance = 1
             {}
             [run]
-            samples = 8192",
+            samples = 2048",
             cube("wall", [0.0; 3], [1.0; 3]),
             sheet("patch", [0.1, 0.1, 0.0], [0.8, 0.0, 0.0], [0.0, 0.8, 0.0]),
             sensors(&[[0.5, 0.5, 0.5], [0.9, 0.2, 0.3]], [0.6, 0.0, 0.8])
@@ -88,7 +88,7 @@ fn divided(sheet_material: &str, run: &str) -> Vec<Reading> {
 
 #[test]
 fn a_pane_of_index_one_is_not_there() {
-    let run = "samples = 16384";
+    let run = "samples = 4096";
     let open = divided("", run);
     let pane = divided("kind = 'pane'\nn = 1\ntau = 1", run);
     assert_same("pane", &pane, &open, 1e-2);
