@@ -21,6 +21,8 @@ use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 
 pub use facts::TreeFacts;
+#[cfg(test)]
+pub(crate) use lanes::Unit;
 use layout::{Boxes, ENOUGH, Visit};
 pub use layout::{Layout, Preset};
 use packet::Sight;
@@ -144,11 +146,11 @@ impl Tree {
         }
     }
 
-    /// The same on the vector unit that every machine has.
+    /// The same on another vector unit.
     #[cfg(test)]
-    pub(crate) fn make_portable(&mut self) {
+    pub(crate) fn exchange_unit(&mut self, other: Unit) {
         if let Boxes::Wide(_, unit) = &mut self.boxes {
-            *unit = lanes::Unit::portable();
+            *unit = other;
         }
     }
 
@@ -290,13 +292,13 @@ impl Tree {
                     frame: &self.frame,
                     question,
                     seen,
+                    last: None,
                     single,
                     beside: |place: usize| Beside::new(from, &self.corners[place], self.slack),
-                    between: |to, place: usize, surely| {
-                        surely && whole(self.triangles[place])
-                            || self
-                                .segment(from, to)
-                                .is_some_and(|segment| segment.crosses(self, place, &exists))
+                    whole: |place: usize| whole(self.triangles[place]),
+                    between: |to, place: usize| {
+                        self.segment(from, to)
+                            .is_some_and(|segment| segment.crosses(self, place, &exists))
                     },
                 });
             }

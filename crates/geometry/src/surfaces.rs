@@ -105,10 +105,10 @@ impl Surfaces {
         std::mem::replace(&mut self.tree, tree)
     }
 
-    /// The same answers from the vector unit that every machine has.
+    /// The same answers from another vector unit.
     #[cfg(test)]
-    pub(crate) fn make_portable(&mut self) {
-        self.tree.make_portable();
+    pub(crate) fn exchange_unit(&mut self, unit: crate::bvh::Unit) {
+        self.tree.exchange_unit(unit);
     }
 
     /// See [`Planes::sides`].

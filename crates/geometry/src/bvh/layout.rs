@@ -211,9 +211,9 @@ impl<S: Visit> Work for Walk<'_, S> {
     type Output = ();
 
     #[inline(always)]
-    fn with<L: Lanes>(self, lanes: L) {
+    fn with<E: Lanes<8>, T: Lanes<16>>(self, eight: E, _: T) {
         self.wide
-            .walk(lanes, self.frame, self.line, self.reach, self.search);
+            .walk(eight, self.frame, self.line, self.reach, self.search);
     }
 }
 

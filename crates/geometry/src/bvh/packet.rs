@@ -9,15 +9,18 @@ use super::frame::Frame;
 use super::lanes::{Lanes, Work};
 use super::rays::{Crossings, Rays, Slabs};
 use super::targets::{PACKET, Packet, Question};
-use super::wide::{LEAF, OPEN, Wide};
+use super::wide::{LEAF, OPEN, WIDTH, Wide};
 use crate::crossing::Beside;
 use glam::DVec3;
 
-/// Numbers of the targets of a packet, by axis.
-pub(super) type Sixteen3 = [[f64; PACKET]; 3];
+/// One bit for each ray of a packet.
+const EACH: u32 = (1 << PACKET) - 1;
+
+/// Coordinates of the targets of a packet, by axis.
+type Places = [[f64; PACKET]; 3];
 
 #[inline(always)]
-fn less(places: &Sixteen3, from: DVec3) -> Sixteen3 {
+fn less(places: &Places, from: DVec3) -> Places {
     let mut segment = [[0.0; PACKET]; 3];
     for axis in 0..3 {
         for lane in 0..PACKET {
@@ -28,7 +31,7 @@ fn less(places: &Sixteen3, from: DVec3) -> Sixteen3 {
 }
 
 #[inline(always)]
-fn dot(a: &Sixteen3, b: &Sixteen3) -> [f64; PACKET] {
+fn dot(a: &Places, b: &Places) -> [f64; PACKET] {
     let mut sums = [0.0; PACKET];
     for lane in 0..PACKET {
         sums[lane] = a[0][lane] * b[0][lane] + a[1][lane] * b[1][lane] + a[2][lane] * b[2][lane];
@@ -36,48 +39,70 @@ fn dot(a: &Sixteen3, b: &Sixteen3) -> [f64; PACKET] {
     sums
 }
 
+/// One bit a lane.
+#[inline(always)]
+fn bits(whether: impl Fn(usize) -> bool) -> u32 {
+    let mut bits = 0;
+    for lane in 0..PACKET {
+        bits |= u32::from(whether(lane)) << lane;
+    }
+    bits
+}
+
 /// Which targets see a point within the scene's bounding sphere, each in front of the other.
-pub(super) struct Sight<'a, S, P, B> {
+pub(super) struct Sight<'a, S, P, W, B> {
     pub wide: &'a Wide,
     pub frame: &'a Frame,
     pub question: &'a Question<'a>,
     /// One entry a target.
     pub seen: &'a mut [bool],
+    /// The leaf that last stopped a ray; it is likely to stop the next packet's.
+    pub last: Option<u32>,
     /// Whether a place is seen that single precision cannot tell from the point, or that lies outside the sphere.
     pub single: S,
     /// What is known of the point and the triangle at a place among the leaves.
     pub beside: P,
-    /// Whether such a triangle lies between the point and another; told where it surely does if it exists there.
+    /// Whether such a triangle exists wherever it is crossed.
+    pub whole: W,
+    /// Whether it lies between the point and another.
     pub between: B,
 }
 
-impl<S, P, B> Work for Sight<'_, S, P, B>
+impl<S, P, W, B> Work for Sight<'_, S, P, W, B>
 where
     S: FnMut(DVec3) -> bool,
     P: Fn(usize) -> Beside,
-    B: FnMut(DVec3, usize, bool) -> bool,
+    W: Fn(usize) -> bool,
+    B: Fn(DVec3, usize) -> bool,
 {
     type Output = ();
 
     #[inline(always)]
-    fn with<L: Lanes>(mut self, lanes: L) {
-        let entries = Wide::open_entries(self.wide.levels);
+    fn with<E: Lanes<WIDTH>, L: Lanes<PACKET>>(mut self, eight: E, lanes: L) {
+        // Beside the open children, the leaf tried first, and a child that no ray meets.
+        let entries = Wide::open_entries(self.wide.levels) + 2;
         if entries <= OPEN {
-            self.look(lanes, &mut [(0, 0); OPEN]);
+            self.look(eight, lanes, &mut [(0, 0); OPEN]);
         } else {
-            self.look(lanes, &mut vec![(0, 0); entries]);
+            self.look(eight, lanes, &mut vec![(0, 0); entries]);
         }
     }
 }
 
-impl<S, P, B> Sight<'_, S, P, B>
+impl<S, P, W, B> Sight<'_, S, P, W, B>
 where
     S: FnMut(DVec3) -> bool,
     P: Fn(usize) -> Beside,
-    B: FnMut(DVec3, usize, bool) -> bool,
+    W: Fn(usize) -> bool,
+    B: Fn(DVec3, usize) -> bool,
 {
     #[inline(always)]
-    fn look<L: Lanes>(&mut self, lanes: L, open: &mut [(u32, u32)]) {
+    fn look<E: Lanes<WIDTH>, L: Lanes<PACKET>>(
+        &mut self,
+        eight: E,
+        lanes: L,
+        open: &mut [(u32, u32)],
+    ) {
         let &Question {
             from,
             normal,
@@ -85,56 +110,62 @@ where
             targets,
         } = self.question;
         let sphere = self.frame.sphere;
+        let normals = [normal.x, normal.y, normal.z].map(|part| [part; PACKET]);
         for packet in &targets.packets {
-            let segment = less(&packet.places, from);
-            let leaving = dot(
-                &segment,
-                &[[normal.x; PACKET], [normal.y; PACKET], [normal.z; PACKET]],
-            );
+            let mut segment = less(&packet.places, from);
+            let leaving = dot(&segment, &normals);
             let arriving = dot(&segment, &packet.normals);
-            let mut length = dot(&segment, &segment);
-            for length in &mut length {
-                *length = length.sqrt();
+            let mut alive = bits(|lane| (leaving[lane] > 0.0) & (arriving[lane] < 0.0));
+            // Targets missing have no normal.
+            if alive == 0 {
+                continue;
             }
-            let mut alive = 0;
-            for lane in 0..packet.count {
-                alive |= u32::from(leaving[lane] > 0.0 && arriving[lane] < 0.0) << lane;
+            if sides.is_some() {
+                for lane in 0..PACKET {
+                    if alive >> lane & 1 == 1 && sides == packet.sides[lane] {
+                        alive &= !(1 << lane);
+                        self.seen[packet.indices[lane] as usize] = true;
+                    }
+                }
             }
-            let mut left = alive;
-            while left != 0 {
-                let lane = left.trailing_zeros() as usize & 15;
-                left &= left - 1;
-                let place = packet.place(lane);
-                if sides.is_some() && sides == packet.sides[lane] {
-                    alive &= !(1 << lane);
-                    self.seen[packet.indices[lane] as usize] = true;
-                    continue;
-                }
-                let within = (place - self.frame.centre).length_squared() <= sphere * sphere;
-                if !(length[lane] > 0.0 && within) {
-                    alive &= !(1 << lane);
-                    self.seen[packet.indices[lane] as usize] = (self.single)(place);
-                }
+            let off = less(&packet.places, self.frame.centre);
+            let (mut square, aside) = (dot(&segment, &segment), dot(&off, &off));
+            let good = bits(|lane| (square[lane] > 0.0) & (aside[lane] <= sphere * sphere));
+            let mut single = alive & !good;
+            alive &= good;
+            while single != 0 {
+                let lane = single.trailing_zeros() as usize & 15;
+                single &= single - 1;
+                let seen = (self.single)(packet.place(lane));
+                self.seen[packet.indices[lane] as usize] = seen;
             }
             if alive == 0 {
                 continue;
             }
-            // Rays that take no part must not widen the packet.
             let first = alive.trailing_zeros() as usize & 15;
-            let mut direction = [[0.0; PACKET]; 3];
-            for lane in 0..PACKET {
-                let part = if alive >> lane & 1 == 1 { lane } else { first };
+            // Rays that take no part must not widen the packet.
+            let mut others = !alive & EACH;
+            while others != 0 {
+                let lane = others.trailing_zeros() as usize & 15;
+                others &= others - 1;
+                square[lane] = square[first];
                 for axis in 0..3 {
-                    direction[axis][lane] = segment[axis][part] / length[part];
+                    segment[axis][lane] = segment[axis][first];
                 }
             }
+            let mut length = [0.0; PACKET];
             for lane in 0..PACKET {
-                if alive >> lane & 1 == 0 {
-                    length[lane] = length[first];
+                length[lane] = square[lane].sqrt();
+            }
+            let mut direction = [[0.0; PACKET]; 3];
+            for axis in 0..3 {
+                for lane in 0..PACKET {
+                    // A negative zero would turn its inverse to the wrong side of a box.
+                    direction[axis][lane] = (segment[axis][lane] / length[lane]) as f32 + 0.0;
                 }
             }
-            let rays = Rays::new(self.frame, from, &direction, &length);
-            alive = self.walk(lanes, &rays, packet, alive, open);
+            let rays = Rays::new(lanes, self.frame, from, &direction, &length);
+            alive = self.walk(eight, lanes, &rays, packet, alive, open);
             while alive != 0 {
                 let lane = alive.trailing_zeros() as usize & 15;
                 alive &= alive - 1;
@@ -145,10 +176,11 @@ where
 
     /// Those of the rays, one bit each, that nothing stops.
     #[inline(always)]
-    fn walk<L: Lanes>(
+    fn walk<E: Lanes<WIDTH>, L: Lanes<PACKET>>(
         &mut self,
+        eight: E,
         lanes: L,
-        rays: &Rays,
+        rays: &Rays<L>,
         packet: &Packet,
         mut alive: u32,
         open: &mut [(u32, u32)],
@@ -156,55 +188,63 @@ where
         if self.wide.nodes.is_empty() {
             return alive;
         }
-        let mut count = 1;
         open[0] = (0, alive);
+        let mut count = 1;
+        let mut tried = None;
+        if let Some(leaf) = self.last {
+            open[1] = (leaf, alive);
+            count = 2;
+        }
         while count > 0 && alive != 0 {
             count -= 1;
             let (child, mask) = open[count];
             let mask = mask & alive;
-            if mask == 0 {
+            if mask == 0 || tried == Some(child) {
                 continue;
             }
             if child & LEAF != 0 {
+                tried = tried.or(Some(child));
                 let leaf = &self.wide.leaves[(child & !LEAF) as usize];
-                let crossings = Crossings::new(lanes, self.frame, rays, leaf);
+                let crossings = Crossings::new(eight, self.frame, rays, leaf);
                 let mut triangles = crossings.any;
                 while triangles != 0 {
                     let triangle = triangles.trailing_zeros() as usize & 7;
                     triangles &= triangles - 1;
-                    let (may, surely) = crossings.crossed(lanes, rays, triangle);
+                    let (may, inside) = crossings.crossed(lanes, rays, triangle);
                     let mut may = may & mask & alive;
                     if may == 0 {
                         continue;
                     }
                     let place = leaf.first as usize + triangle;
-                    let beside = (self.beside)(place);
+                    let (off, parted) = (self.beside)(place).sides(&packet.places);
+                    // Mostly the surface that the point lies on, from which single precision cannot tell it.
+                    may &= !off;
+                    let mut stopped = may & inside & parted;
+                    if stopped != 0 && !(self.whole)(place) {
+                        stopped = 0;
+                    }
+                    may &= !stopped;
                     while may != 0 {
                         let lane = may.trailing_zeros() as usize & 15;
                         may &= may - 1;
-                        let surely = surely >> lane & 1 == 1;
-                        let to = packet.place(lane);
-                        // Mostly the surface that the point lies on, from which single precision cannot tell it.
-                        if beside.keeps_off(to) {
-                            continue;
-                        }
-                        if (self.between)(to, place, surely) {
-                            alive &= !(1 << lane);
-                        }
+                        stopped |= u32::from((self.between)(packet.place(lane), place)) << lane;
+                    }
+                    if stopped != 0 {
+                        alive &= !stopped;
+                        self.last = Some(child);
                     }
                 }
             } else {
                 let node = &self.wide.nodes[child as usize];
-                let slabs = Slabs::new(lanes, rays, node);
+                let slabs = Slabs::new(eight, rays, node);
                 let mut children = slabs.any;
                 while children != 0 {
                     let lane = children.trailing_zeros() as usize & 7;
                     children &= children - 1;
                     let met = slabs.met(lanes, rays, lane) & mask;
-                    if met != 0 {
-                        open[count] = (node.children[lane], met);
-                        count += 1;
-                    }
+                    // Without a branch, which would be hard to foresee.
+                    open[count] = (node.children[lane], met);
+                    count += usize::from(met != 0);
                 }
             }
         }

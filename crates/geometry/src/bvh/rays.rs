@@ -7,22 +7,21 @@
 
 use super::frame::Frame;
 use super::lanes::Lanes;
-use super::packet::Sixteen3;
 use super::targets::PACKET;
 use super::wide::{Leaf, Node, WIDTH};
 use glam::DVec3;
 use obvhs::ray::safe_inverse;
 
 /// Numbers of sixteen rays.
-type Sixteen = [[f32; WIDTH]; 2];
+type Sixteen = [f32; PACKET];
 
 /// The rays from one point to the targets of a packet, in the tree's frame.
-pub(super) struct Rays {
+pub(super) struct Rays<L: Lanes<PACKET>> {
     origin: [f32; 3],
-    direction: [Sixteen; 3],
-    inverse: [Sixteen; 3],
+    direction: [L::Numbers; 3],
+    inverse: [L::Numbers; 3],
     /// Distances to the targets, rounded up.
-    reach: Sixteen,
+    reach: L::Numbers,
     /// Bounds of all these, by axis.
     bounds: [Bounds; 3],
     farthest: f32,
@@ -41,93 +40,68 @@ struct Bounds {
 
 impl Bounds {
     #[inline(always)]
-    fn new(direction: &Sixteen, inverse: &Sixteen) -> Self {
-        let mut forward = [[f32::MAX; WIDTH]; 2];
-        let mut backward = [[f32::MIN; WIDTH]; 2];
-        for half in 0..2 {
-            for lane in 0..WIDTH {
-                let inverse = inverse[half][lane];
-                forward[half][lane] = if inverse > 0.0 { inverse } else { f32::MAX };
-                backward[half][lane] = if inverse < 0.0 { inverse } else { f32::MIN };
-            }
-        }
-        let (forward, backward) = (least(&forward), most(&backward));
-        let far = match (forward < f32::MAX, backward > f32::MIN) {
-            (true, false) => (true, most(inverse), f32::NEG_INFINITY),
-            (false, true) => (false, least(inverse), f32::NEG_INFINITY),
-            _ => (false, 0.0, f32::INFINITY),
+    fn new<L: Lanes<PACKET>>(lanes: L, direction: L::Numbers) -> Self {
+        let (least, most) = (lanes.least(direction), lanes.most(direction));
+        // The inverse falls with the direction on either side of zero.
+        let forward = if most >= 0.0 {
+            safe_inverse(most)
+        } else {
+            f32::MAX
+        };
+        let backward = if least < 0.0 {
+            safe_inverse(least)
+        } else {
+            f32::MIN
+        };
+        let far = if least >= 0.0 {
+            (true, safe_inverse(least), f32::NEG_INFINITY)
+        } else if most < 0.0 {
+            (false, safe_inverse(most), f32::NEG_INFINITY)
+        } else {
+            (false, 0.0, f32::INFINITY)
         };
         Self {
-            direction: [least(direction), most(direction)],
+            direction: [least, most],
             near: [forward, backward],
             far,
         }
     }
 }
 
-#[inline(always)]
-fn least([a, b]: &Sixteen) -> f32 {
-    let mut eight = [0.0; WIDTH];
-    for lane in 0..WIDTH {
-        eight[lane] = if a[lane] < b[lane] { a[lane] } else { b[lane] };
-    }
-    for half in [4, 2, 1] {
-        for lane in 0..half {
-            if eight[lane + half] < eight[lane] {
-                eight[lane] = eight[lane + half];
-            }
-        }
-    }
-    eight[0]
-}
-
-#[inline(always)]
-fn most([a, b]: &Sixteen) -> f32 {
-    let mut eight = [0.0; WIDTH];
-    for lane in 0..WIDTH {
-        eight[lane] = if a[lane] > b[lane] { a[lane] } else { b[lane] };
-    }
-    for half in [4, 2, 1] {
-        for lane in 0..half {
-            if eight[lane + half] > eight[lane] {
-                eight[lane] = eight[lane + half];
-            }
-        }
-    }
-    eight[0]
-}
-
-impl Rays {
+impl<L: Lanes<PACKET>> Rays<L> {
+    /// Rays of the given directions and, in m, lengths.
     #[inline(always)]
-    pub fn new(frame: &Frame, from: DVec3, directions: &Sixteen3, lengths: &[f64; PACKET]) -> Self {
-        let mut direction = [[[0.0; WIDTH]; 2]; 3];
-        let mut inverse = direction;
-        let mut reach = [[0.0; WIDTH]; 2];
-        for half in 0..2 {
-            for lane in 0..WIDTH {
-                for axis in 0..3 {
-                    // A negative zero would turn its inverse to the wrong side of a box.
-                    let component = directions[axis][half * WIDTH + lane] as f32 + 0.0;
-                    direction[axis][half][lane] = component;
-                    inverse[axis][half][lane] = safe_inverse(component);
-                }
-                let length = lengths[half * WIDTH + lane];
-                // More than what it is rounded by.
-                reach[half][lane] = (length * frame.scale * (1.0 + 1e-6)) as f32;
+    pub fn new(
+        lanes: L,
+        frame: &Frame,
+        from: DVec3,
+        directions: &[Sixteen; 3],
+        lengths: &[f64; PACKET],
+    ) -> Self {
+        let mut inverse = [[0.0; PACKET]; 3];
+        let mut reach = [0.0; PACKET];
+        for axis in 0..3 {
+            for lane in 0..PACKET {
+                inverse[axis][lane] = safe_inverse(directions[axis][lane]);
             }
         }
-        let bounds = [
-            Bounds::new(&direction[0], &inverse[0]),
-            Bounds::new(&direction[1], &inverse[1]),
-            Bounds::new(&direction[2], &inverse[2]),
-        ];
+        for lane in 0..PACKET {
+            // More than what it is rounded by.
+            reach[lane] = (lengths[lane] * frame.scale * (1.0 + 1e-6)) as f32;
+        }
+        let direction = lanes.load3(directions);
+        let reach = lanes.load(&reach);
         Self {
             origin: frame.point(from).as_vec3().to_array(),
             direction,
-            inverse,
+            inverse: lanes.load3(&inverse),
             reach,
-            bounds,
-            farthest: most(&reach),
+            bounds: [
+                Bounds::new(lanes, direction[0]),
+                Bounds::new(lanes, direction[1]),
+                Bounds::new(lanes, direction[2]),
+            ],
+            farthest: lanes.most(reach),
         }
     }
 }
@@ -140,7 +114,7 @@ pub(super) struct Slabs {
 
 impl Slabs {
     #[inline(always)]
-    pub fn new<L: Lanes>(lanes: L, rays: &Rays, node: &Node) -> Self {
+    pub fn new<E: Lanes<WIDTH>, L: Lanes<PACKET>>(lanes: E, rays: &Rays<L>, node: &Node) -> Self {
         let mut near = lanes.splat(0.0);
         let mut far = lanes.splat(rays.farthest);
         let mut sides = [[[0.0; WIDTH]; 2]; 3];
@@ -165,22 +139,17 @@ impl Slabs {
 
     /// Which rays meet the box of a child, one bit each.
     #[inline(always)]
-    pub fn met<L: Lanes>(&self, lanes: L, rays: &Rays, child: usize) -> u32 {
-        let mut met = 0;
-        for half in 0..2 {
-            let mut near = lanes.splat(0.0);
-            let mut far = lanes.load(&rays.reach[half]);
-            for axis in 0..3 {
-                let inverse = lanes.load(&rays.inverse[axis][half]);
-                let [least, most] = &self.sides[axis];
-                let least = lanes.mul(lanes.splat(least[child]), inverse);
-                let most = lanes.mul(lanes.splat(most[child]), inverse);
-                near = lanes.max(near, lanes.min(least, most));
-                far = lanes.min(far, lanes.max(least, most));
-            }
-            met |= lanes.at_most(near, far) << (half * WIDTH);
+    pub fn met<L: Lanes<PACKET>>(&self, lanes: L, rays: &Rays<L>, child: usize) -> u32 {
+        let mut near = lanes.splat(0.0);
+        let mut far = rays.reach;
+        for axis in 0..3 {
+            let [least, most] = &self.sides[axis];
+            let least = lanes.mul(lanes.splat(least[child]), rays.inverse[axis]);
+            let most = lanes.mul(lanes.splat(most[child]), rays.inverse[axis]);
+            near = lanes.max(near, lanes.min(least, most));
+            far = lanes.min(far, lanes.max(least, most));
         }
-        met
+        lanes.at_most(near, far)
     }
 }
 
@@ -191,10 +160,6 @@ pub(super) struct Crossings {
     edges: [[[f32; WIDTH]; 3]; 3],
     /// By how much such a product may be wrong.
     blur: [f32; WIDTH],
-    /// The vertices as the origin sees them.
-    vertices: [[[f32; WIDTH]; 3]; 3],
-    /// By how much a distance along a ray may be wrong, and more.
-    margin: f32,
     pub any: u32,
 }
 
@@ -204,7 +169,12 @@ impl Crossings {
     /// direction and by 38 ε₀ r l from its own, and the thickness of triangles shifts it by l slacks. The
     /// longest edge is at most √3 times its longest component.
     #[inline(always)]
-    pub fn new<L: Lanes>(lanes: L, frame: &Frame, rays: &Rays, leaf: &Leaf) -> Self {
+    pub fn new<E: Lanes<WIDTH>, L: Lanes<PACKET>>(
+        lanes: E,
+        frame: &Frame,
+        rays: &Rays<L>,
+        leaf: &Leaf,
+    ) -> Self {
         let origin = lanes.splat3(rays.origin);
         let [p, q, r] = &leaf.vertices;
         let p = lanes.load_less([&p[0], &p[1], &p[2]], origin);
@@ -240,74 +210,52 @@ impl Crossings {
         // Not beyond one edge with all rays while before another with all.
         let any = lanes.at_most(lanes.negative(blur), lanes.min3(most))
             | lanes.at_most(lanes.max3(least), blur);
-        let mut vertices = [[[0.0; WIDTH]; 3]; 3];
-        for axis in 0..3 {
-            vertices[0][axis] = lanes.store(p[axis]);
-            vertices[1][axis] = lanes.store(q[axis]);
-            vertices[2][axis] = lanes.store(r[axis]);
-        }
         Self {
             edges,
             blur: lanes.store(blur),
-            vertices,
-            margin: frame.margin,
             any,
         }
     }
 
-    /// Which rays may cross a triangle, one bit each, and which surely cross it before their ends.
+    /// Which rays may cross a triangle, one bit each, and whose lines surely do.
     ///
     /// Those that pass all edges on one side by more than the blur cross it by 30 ε₀ r inside its edges at least: double
-    /// precision sees them do so too, and finds a distance between those of the vertices.
+    /// precision sees them do so too.
     #[inline(always)]
-    pub fn crossed<L: Lanes>(&self, lanes: L, rays: &Rays, triangle: usize) -> (u32, u32) {
-        let (mut may, mut surely) = (0, 0);
-        let blur = lanes.splat(self.blur[triangle]);
-        let beneath = lanes.negative(blur);
-        for half in 0..2 {
-            let direction = [
-                lanes.load(&rays.direction[0][half]),
-                lanes.load(&rays.direction[1][half]),
-                lanes.load(&rays.direction[2][half]),
-            ];
-            let passed = [
-                self.dot(lanes, direction, &self.edges[0], triangle),
-                self.dot(lanes, direction, &self.edges[1], triangle),
-                self.dot(lanes, direction, &self.edges[2], triangle),
-            ];
-            let (least, most) = (lanes.min3(passed), lanes.max3(passed));
-            let some = lanes.at_most(beneath, least) | lanes.at_most(most, blur);
-            if some == 0 {
-                continue;
-            }
-            may |= some << (half * WIDTH);
-            let along = [
-                self.dot(lanes, direction, &self.vertices[0], triangle),
-                self.dot(lanes, direction, &self.vertices[1], triangle),
-                self.dot(lanes, direction, &self.vertices[2], triangle),
-            ];
-            let margin = lanes.splat(self.margin);
-            let end = lanes.sub(lanes.load(&rays.reach[half]), margin);
-            let within =
-                lanes.at_most(margin, lanes.min3(along)) & lanes.at_most(lanes.max3(along), end);
-            let inside = lanes.at_most(blur, least) | lanes.at_most(most, beneath);
-            surely |= (within & inside) << (half * WIDTH);
-        }
-        (may, surely)
-    }
-
-    /// Products of eight rays with a vector of each triangle.
-    #[inline(always)]
-    fn dot<L: Lanes>(
+    pub fn crossed<L: Lanes<PACKET>>(
         &self,
         lanes: L,
-        direction: [L::Eight; 3],
+        rays: &Rays<L>,
+        triangle: usize,
+    ) -> (u32, u32) {
+        let blur = lanes.splat(self.blur[triangle]);
+        let beneath = lanes.negative(blur);
+        let passed = [
+            self.dot(lanes, rays, &self.edges[0], triangle),
+            self.dot(lanes, rays, &self.edges[1], triangle),
+            self.dot(lanes, rays, &self.edges[2], triangle),
+        ];
+        let (least, most) = (lanes.min3(passed), lanes.max3(passed));
+        let may = lanes.at_most(beneath, least) | lanes.at_most(most, blur);
+        if may == 0 {
+            return (0, 0);
+        }
+        let inside = lanes.at_most(blur, least) | lanes.at_most(most, beneath);
+        (may, inside)
+    }
+
+    /// Products of the rays with a vector of a triangle.
+    #[inline(always)]
+    fn dot<L: Lanes<PACKET>>(
+        &self,
+        lanes: L,
+        rays: &Rays<L>,
         vectors: &[[f32; WIDTH]; 3],
         triangle: usize,
-    ) -> L::Eight {
-        let x = lanes.mul(lanes.splat(vectors[0][triangle]), direction[0]);
-        let y = lanes.mul(lanes.splat(vectors[1][triangle]), direction[1]);
-        let z = lanes.mul(lanes.splat(vectors[2][triangle]), direction[2]);
+    ) -> L::Numbers {
+        let x = lanes.mul(lanes.splat(vectors[0][triangle]), rays.direction[0]);
+        let y = lanes.mul(lanes.splat(vectors[1][triangle]), rays.direction[1]);
+        let z = lanes.mul(lanes.splat(vectors[2][triangle]), rays.direction[2]);
         lanes.add(lanes.add(x, y), z)
     }
 }

@@ -1,5 +1,6 @@
 //! Every tree, on every vector unit, alone or in packets, gives the same answers to the last bit.
 
+use super::Unit;
 use crate::planes::Planes;
 use crate::testing::{self, Uniform, cube, grid, room, surfaces};
 use crate::{Hit, Layout, Mesh, Preset, Surfaces, Targets, shape};
@@ -106,8 +107,10 @@ fn assert_one_answer(mut surfaces: Surfaces, layouts: &[Layout], seed: u64, coun
         check(&surfaces, layout);
     }
     surfaces.exchange(surfaces.tree(Layout::Wide, Preset::Fastest));
-    surfaces.make_portable();
-    check(&surfaces, Layout::Wide);
+    for unit in Unit::all() {
+        surfaces.exchange_unit(unit);
+        check(&surfaces, Layout::Wide);
+    }
 }
 
 #[test]

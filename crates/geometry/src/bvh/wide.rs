@@ -60,8 +60,8 @@ impl Wide {
         let mut open = vec![(0, vec![0], 1)];
         while let Some((index, mut children, level)) = open.pop() {
             wide.levels = wide.levels.max(level);
+            let area = |&child: &usize| binary.nodes[child].aabb().half_area();
             while children.len() < WIDTH {
-                let area = |&child: &usize| binary.nodes[child].aabb().half_area();
                 let largest = (0..children.len())
                     .filter(|&place| !binary.nodes[children[place]].is_leaf())
                     .max_by(|&a, &b| area(&children[a]).total_cmp(&area(&children[b])));
@@ -72,6 +72,8 @@ impl Wide {
                 children[place] = first;
                 children.push(first + 1);
             }
+            // A packet opens the last first: the largest is the likeliest to stop its rays.
+            children.sort_by(|a, b| area(a).total_cmp(&area(b)));
             for (lane, child) in children.into_iter().enumerate() {
                 let node = &binary.nodes[child];
                 wide.nodes[index].set_box(lane, node.aabb());
@@ -104,7 +106,7 @@ impl Wide {
 
     /// Tries the triangles that a ray may cross, roughly from the nearest on.
     #[inline(always)]
-    pub fn walk<L: Lanes>(
+    pub fn walk<L: Lanes<WIDTH>>(
         &self,
         lanes: L,
         frame: &Frame,
@@ -121,7 +123,7 @@ impl Wide {
     }
 
     #[inline(always)]
-    fn walk_with<L: Lanes>(
+    fn walk_with<L: Lanes<WIDTH>>(
         &self,
         lanes: L,
         frame: &Frame,
@@ -289,18 +291,18 @@ impl Leaf {
 }
 
 /// A ray seen along itself in single precision: the axis that it follows most is kept, the others are sheared.
-struct Sheared<L: Lanes> {
+struct Sheared<L: Lanes<WIDTH>> {
     axes: [usize; 3],
-    origin: [L::Eight; 3],
-    shear: [L::Eight; 2],
+    origin: [L::Numbers; 3],
+    shear: [L::Numbers; 2],
     /// Distance along the ray for a step of one along the axis kept.
-    stretch: L::Eight,
+    stretch: L::Numbers,
     /// By how much a coordinate may be wrong.
-    least: L::Eight,
+    least: L::Numbers,
     /// By how much an edge function may be wrong, for coordinates of size 1.
-    blur: L::Eight,
+    blur: L::Numbers,
     /// By how much a distance along the ray may be wrong.
-    margin: L::Eight,
+    margin: L::Numbers,
 }
 
 /// What single precision says of a ray and the triangles of a leaf.
@@ -313,7 +315,7 @@ struct Crossed {
     least: [f32; WIDTH],
 }
 
-impl<L: Lanes> Sheared<L> {
+impl<L: Lanes<WIDTH>> Sheared<L> {
     /// With ε₀ = 2⁻²⁴ and the scene's radius r, a coordinate across the ray is wrong by 17 ε₀ r: 4 of each of the two
     /// differences to the origin, the rest from the shear. An edge function of coordinates up to m is wrong by four times
     /// that and 16 ε₀ r from its own rounding, times m; the thickness of triangles shifts it by 6 slacks. A distance is
@@ -393,7 +395,7 @@ impl<L: Lanes> Sheared<L> {
 
     /// Coordinates of a vertex: two across the ray, and the one along the axis kept.
     #[inline(always)]
-    fn seen(&self, lanes: L, vertex: &[[f32; WIDTH]; 3]) -> [L::Eight; 3] {
+    fn seen(&self, lanes: L, vertex: &[[f32; WIDTH]; 3]) -> [L::Numbers; 3] {
         let [x, y, z] = self.axes;
         let [x, y, z] = lanes.load_less([&vertex[x], &vertex[y], &vertex[z]], self.origin);
         [
