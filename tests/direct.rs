@@ -248,7 +248,7 @@ fn cells_that_tile_a_floor_add_up_to_it() {
     );
 }
 
-/// At the first look, after 1024 walks, hardly a walk has crossed the cell, of 1 in 630: a run that stops by its error
+/// At the first look, after 512 walks, hardly a walk has crossed the cell, of 1 in 630: a run that stops by its error
 /// goes on until it knows better.
 #[test]
 fn a_run_that_has_counted_little_does_not_stop() {

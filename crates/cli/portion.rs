@@ -186,6 +186,6 @@ mod tests {
 
     #[test]
     fn samples_are_rounded_up_to_whole_rounds() {
-        assert_eq!([1, 64, 65].map(rounded_up), [64, 64, 128]);
+        assert_eq!([1, 32, 33].map(rounded_up), [32, 32, 64]);
     }
 }

@@ -323,7 +323,7 @@ mod tests {
                 assert!((FEWEST..=walks).contains(&(block.end - block.start)));
                 end = block.end;
             }
-            // A run that ends at a first look, of 2, 4, 8 or 16 walks, has launched no more.
+            // A run that ends at a first look, of a power of two of walks, has launched no more.
             for looked in [2, 4, 8, 16] {
                 assert_eq!(block(looked - 1, walks).end, looked);
             }

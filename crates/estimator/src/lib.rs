@@ -35,6 +35,7 @@ mod receiver;
 mod results;
 mod run;
 mod sight;
+mod sobol;
 mod spread;
 mod state;
 mod statistics;

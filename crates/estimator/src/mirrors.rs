@@ -109,7 +109,7 @@ pub(crate) struct Viewer {
     pub point: DVec3,
     /// Unit normal; light is received by the cosine to it.
     pub normal: DVec3,
-    /// True for a sensor, which looks every time.
+    /// True for a sensor, which looks more often.
     pub sensor: bool,
 }
 

@@ -7,6 +7,7 @@
 //! dimensions together, scrambled anew for each replica, so that the spread between replicas is an honest error.
 //! Each point by itself is uniform, so any number of them is without bias. What comes later is independent.
 
+use crate::sobol::{LENGTH, Point};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -54,9 +55,6 @@ const BLOCK: u64 = 4;
 /// Vertices of a walk, its start included, whose numbers are spread evenly.
 const SPREAD: u32 = 8;
 
-/// Length of a Sobol' sequence before it is scrambled anew, as a power of two.
-const SEQUENCE: u32 = 16;
-
 /// Weyl increment of SplitMix64 (Steele, Lea & Flood 2014): the odd number nearest 2⁶⁴/φ.
 const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
@@ -95,9 +93,11 @@ impl Stream {
     /// The `index`-th walk of this stream.
     #[must_use]
     pub(crate) fn walk(self, index: u64) -> Uniforms {
+        // A sequence that has come to its end is scrambled anew.
+        let sequence = index >> LENGTH;
+        let seed = mixed(self.key ^ mixed(sequence.wrapping_mul(GOLDEN) ^ GOLDEN)) as u32;
         Uniforms {
-            stream: self.key,
-            index,
+            point: Point::new((index & ((1 << LENGTH) - 1)) as u32, seed),
             key: mixed(
                 self.key
                     .wrapping_add(mixed(index.wrapping_mul(GOLDEN) ^ GOLDEN)),
@@ -127,8 +127,8 @@ impl Fresh {
 /// All uniform numbers of one walk.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Uniforms {
-    stream: u64,
-    index: u64,
+    /// Those that are spread evenly.
+    point: Point,
     key: u64,
 }
 
@@ -166,10 +166,7 @@ impl Uniforms {
         if depth >= SPREAD {
             return std::array::from_fn(|i| (bits(i) >> 11) as f64 * (0.5 / (1u64 << 52) as f64));
         }
-        let sequence = self.index >> SEQUENCE;
-        let seed = mixed(self.stream ^ mixed(sequence.wrapping_mul(GOLDEN) ^ GOLDEN)) as u32;
-        let index = (self.index & ((1 << SEQUENCE) - 1)) as u32;
-        let point = sobol_burley::sample_4d(index, purpose.dimensions(depth), seed);
+        let point = self.point.four(purpose.dimensions(depth));
         // Single precision gives 23 bits; independent ones fill the other 30, two numbers' worth from each hash.
         let (low, high) = (bits(0), bits(1));
         let rest = [low >> 34, low & 0x3FFF_FFFF, high >> 34, high & 0x3FFF_FFFF];

@@ -52,17 +52,24 @@ impl Checkpoints {
         Self { first }
     }
 
-    /// The first checkpoint after `taken` walks a replica: one to the octave, and four as soon as they tell enough; the first of
-    /// all may lie between.
+    /// The first checkpoint after `taken` walks a replica: of the first of all, one to the octave, and four as soon as they
+    /// tell enough.
     fn after(self, taken: u64) -> u64 {
-        if taken < self.first {
-            return self.first;
+        let mut next = self.first;
+        while next <= taken {
+            next = if next < Self::TELLING {
+                2 * next
+            } else {
+                let spacing = 1 << (next.ilog2() - 2);
+                (next / spacing + 1) * spacing
+            };
         }
-        if taken < Self::TELLING {
-            return 2 * taken;
-        }
-        let spacing = 1 << (taken.ilog2() - 2);
-        (taken / spacing + 1) * spacing
+        next
+    }
+
+    /// Whether one is reached after so many.
+    fn holds(self, taken: u64) -> bool {
+        self.after(taken - 1) == taken
     }
 }
 
@@ -302,7 +309,7 @@ fn run_with<const N: usize>(
     let stop = loop {
         // A run that goes on is judged where it was set aside, too: it may have been right before its end.
         if taken > 0 {
-            let checkpoint = taken == checkpoints.after(taken - 1) || Some(taken) == limit;
+            let checkpoint = checkpoints.holds(taken) || Some(taken) == limit;
             if checkpoint {
                 reached = Some(first.relative_error(&state.walks));
             }
@@ -438,7 +445,13 @@ mod tests {
             let checkpoints = Checkpoints::new(goal, |walks| expected / (walks as f64).sqrt());
             let mut taken = 0;
             let mut next = || {
-                taken = checkpoints.after(taken);
+                // However long the steps are.
+                let next = checkpoints.after(taken);
+                for step in taken + 1..next {
+                    assert!(!checkpoints.holds(step) && checkpoints.after(step) == next);
+                }
+                assert!(checkpoints.holds(next));
+                taken = next;
                 taken
             };
             (0..count).map(|_| next()).collect()

@@ -212,11 +212,11 @@ mod tests {
         assert_eq!((shard.index(), shard.count()), (3, 8));
         assert_eq!(shard.to_string(), "3/8");
         for text in [
-            "", "3", "0/8", "9/8", "1/65", "1/0", "-1/8", "1/8/2", "a/b", "1.5/8",
+            "", "3", "0/8", "9/8", "1/33", "1/0", "-1/8", "1/8/2", "a/b", "1.5/8",
         ] {
             let error = text.parse::<Shard>().unwrap_err().to_string();
             assert!(
-                error.contains("1 ≤ I ≤ N ≤ 64") && error.contains(text),
+                error.contains("1 ≤ I ≤ N ≤ 32") && error.contains(text),
                 "{error}"
             );
         }

@@ -120,6 +120,9 @@ impl Line {
     }
 }
 
+/// Height over its longest edge, in terms of that, below which a triangle's plane may miss its vertices by a slack.
+const NEEDLE: f64 = 1e-5;
+
 /// A point beside a triangle: whether a segment from there stays on its side of the triangle's plane, or leaves it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Beside {
@@ -138,11 +141,22 @@ impl Beside {
             vertices: *triangle,
         }
         .area_vector();
+        let length = normal.length();
+        let [a, b, c] = *triangle;
+        let longest = (b - a)
+            .length_squared()
+            .max((c - b).length_squared())
+            .max((a - c).length_squared());
         Self {
             normal,
-            corner: triangle[0],
-            height: normal.dot(point - triangle[0]),
-            margin: 2.0 * slack * normal.length(),
+            corner: a,
+            height: normal.dot(point - a),
+            // The plane of a needle is known too badly to tell anything.
+            margin: if length > NEEDLE * longest {
+                2.0 * slack * length
+            } else {
+                f64::INFINITY
+            },
         }
     }
 
