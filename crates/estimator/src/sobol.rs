@@ -78,7 +78,11 @@ mod tests {
                 let point = Point::new(index, seed);
                 for set in 0..SETS {
                     let expected = sobol_burley::sample_4d(index, set, seed);
-                    assert_eq!(point.four(set), expected, "{index}, {set}, {seed}");
+                    assert_eq!(
+                        point.four(set).map(f32::to_bits),
+                        expected.map(f32::to_bits),
+                        "{index}, {set}, {seed}"
+                    );
                 }
             }
         }
