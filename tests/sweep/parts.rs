@@ -135,7 +135,7 @@ fn a_study_that_is_killed_goes_on_to_the_same_bytes() {
         "sweep",
         "study.toml",
         "--relative-error",
-        "0.001",
+        "0.0004",
         "--sensors",
         "-o",
     ];
