@@ -8,7 +8,7 @@ use crate::run::End;
 use crate::slurm::Array;
 use anyhow::{Result, anyhow, ensure};
 use clap::{Args, ValueEnum};
-use malus_estimator::Shard;
+use malus_estimator::{REPLICAS, Shard};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
@@ -80,7 +80,7 @@ impl Cluster {
         let text = self.shards.as_deref().unwrap_or_default();
         let shard = text.parse().ok().and_then(|n| Shard::new(1, n).ok());
         let shard = shard.ok_or_else(|| {
-            anyhow!("--shards {text}: must be a whole number from 1 to 32, found {text:?}")
+            anyhow!("--shards {text}: must be a whole number from 1 to {REPLICAS}, found {text:?}")
         })?;
         Ok(shard.count())
     }

@@ -1,13 +1,15 @@
 //! Whether intervals hold what they promise: short runs of one scene by many seeds.
 
-use malus_estimator::{Answer, Reading, run};
+use malus_estimator::{Answer, REPLICAS, Reading, half_width_95, run};
 use malus_scene::Scene;
 
 /// Runs a scene.
 const SEEDS: u64 = 4000;
 
-/// Student's t for 31 degrees of freedom at 97.5 %.
-pub const T: f64 = 2.039_513_4;
+/// Student's t of a run at 97.5 %.
+pub fn t() -> f64 {
+    half_width_95(REPLICAS - 1)
+}
 
 /// Value and standard error of something that is read.
 type Quantity = fn(&Reading) -> (f64, f64);
@@ -99,7 +101,7 @@ fn report(name: &str, scene: &Scene) {
         let error = (squares / (count * (count - 1.0))).sqrt();
         let held = values
             .iter()
-            .filter(|v| (v.0 - mean).abs() <= T * v.1)
+            .filter(|v| (v.0 - mean).abs() <= t() * v.1)
             .count();
         let (truth, its_error) = of(&long);
         println!(

@@ -1,6 +1,6 @@
 //! Whether a run that stops by its error is as good as one of a fixed length: no bias, and intervals that hold.
 
-use crate::coverage::{T, room};
+use crate::coverage::{room, t};
 use malus_estimator::{Answer, run};
 use malus_scene::{Estimator, Scene};
 use rayon::prelude::*;
@@ -189,7 +189,7 @@ fn covered(runs: &[Outcome], truth: &[(f64, f64)]) -> f64 {
     let holds = |run: &Outcome| {
         let readings = run.readings.iter().zip(truth);
         readings
-            .filter(|((value, error), (exact, _))| (value - exact).abs() <= T * error)
+            .filter(|((value, error), (exact, _))| (value - exact).abs() <= t() * error)
             .count()
     };
     runs.iter().map(holds).sum::<usize>() as f64 / (runs.len() * truth.len()) as f64

@@ -77,8 +77,9 @@ pub(crate) struct Mirrors {
     facets: Facets,
     /// Reflectors of each, those of its largest triangle.
     covers: Vec<Cover>,
-    /// Probability with which a sensor, and a vertex of a walk, looks into mirrors.
-    looks: [f64; 2],
+    /// Probability with which a vertex of a walk looks into mirrors, and a sensor.
+    look: f64,
+    look_of_sensor: f64,
     /// Diffuse light that is mirrored by what belongs to no facet, as a share of what meets all surfaces.
     unseen: f64,
     /// Radius of the cone of directions about an image, where it stands, in m.
@@ -153,13 +154,10 @@ impl Mirrors {
             .collect();
         let share = |part: f64| if area > 0.0 { part / area } else { 0.0 };
         let dear = (COST_OF_LOOK + of_facets.len() as f64).sqrt();
-        let looks = [LOOK_OF_SENSOR / dear, LOOK].map(|times| times * share(seen));
         let mut mirrors = Self {
             unseen: share(unseen),
-            looks: [
-                looks[0].clamp(LEAST_LOOK_OF_SENSOR, 1.0),
-                looks[1].clamp(LEAST_LOOK, 1.0),
-            ],
+            look: (LOOK * share(seen)).clamp(LEAST_LOOK, 1.0),
+            look_of_sensor: (LOOK_OF_SENSOR / dear * share(seen)).clamp(LEAST_LOOK_OF_SENSOR, 1.0),
             facets,
             covers: of_facets,
             spread: images::SPREAD * radius,
@@ -207,8 +205,8 @@ impl Mirrors {
     pub(crate) fn odds(&self, sensor: bool) -> f64 {
         match sensor {
             _ if self.is_empty() => 0.0,
-            true => self.looks[0],
-            false => self.looks[1],
+            true => self.look_of_sensor,
+            false => self.look,
         }
     }
 

@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 pub(crate) const LENGTH: u32 = 16;
 
 /// Sets of four dimensions.
-pub(crate) const SETS: u32 = 48;
+const SETS: u32 = 48;
 
 /// Bits of an index that are looked up at once.
 const BITS: u32 = 4;

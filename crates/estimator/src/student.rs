@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn a_probability_is_that_of_its_quantile() {
-        for (confidence, dof) in [(0.95, 31), (0.999, 63), (0.99, 10)] {
+        for (confidence, dof) in [(0.95, 31), (0.95, 63), (0.999, 63), (0.99, 10)] {
             let p = two_sided(half_width(confidence, dof), dof);
             assert!((p - (1.0 - confidence)).abs() < 1e-9, "{p}");
         }

@@ -137,22 +137,16 @@ pub(crate) struct Beside {
 impl Beside {
     #[inline(always)]
     pub fn new(point: DVec3, triangle: &[DVec3; 3], slack: f64) -> Self {
-        let normal = Triangle {
-            vertices: *triangle,
-        }
-        .area_vector();
-        let length = normal.length();
-        let [a, b, c] = *triangle;
-        let longest = (b - a)
-            .length_squared()
-            .max((c - b).length_squared())
-            .max((a - c).length_squared());
+        let vertices = *triangle;
+        let triangle = Triangle { vertices };
+        let normal = triangle.area_vector();
+        let (length, longest) = (normal.length(), triangle.longest_edge());
         Self {
             normal,
-            corner: a,
-            height: normal.dot(point - a),
+            corner: vertices[0],
+            height: normal.dot(point - vertices[0]),
             // The plane of a needle is known too badly to tell anything.
-            margin: if length > NEEDLE * longest {
+            margin: if length > NEEDLE * longest * longest {
                 2.0 * slack * length
             } else {
                 f64::INFINITY
