@@ -32,13 +32,13 @@ const TRIED: u32 = PARTS / 8;
 
 /// Rounds of the pilot, and in one round the walks from the emitters and those from all sensors, of which each has one at
 /// least.
-const ROUNDS: u32 = 16;
-const LAUNCHED: u64 = 8;
+const ROUNDS: u32 = 12;
+const LAUNCHED: u64 = 4;
 const GATHERED: u64 = 16;
 
 /// By how much less walks from the emitters err in a run, whose points are many and spread evenly. Far from walls their
 /// light is smooth; it is not where walks from the sensors are needed.
-const EVEN: f64 = 3.0;
+const EVEN: f64 = 5.0;
 
 /// Walks from one sensor that tell as much of its variance as the mean over all sensors does.
 const TELLING: f64 = 16.0;

@@ -2,7 +2,11 @@
 
 use glam::DVec3;
 use malus_geometry::Facet;
+use smallvec::SmallVec;
 use std::f64::consts::TAU;
+
+/// Corners of a polygon as directions, on the stack where there are few.
+type Edges = SmallVec<[DVec3; 8]>;
 
 /// A cone of directions from a receiving point, or from its image behind mirrors.
 ///
@@ -14,7 +18,7 @@ pub(crate) struct Beam {
     /// Normal of the receiving surface, mirrored likewise.
     pub normal: DVec3,
     /// Edges of the cone, as directions of any length; none: the whole hemisphere about the normal.
-    edges: Vec<DVec3>,
+    edges: Edges,
     /// +1 where the edges run anticlockwise as seen against the beam, −1 otherwise.
     turn: f64,
 }
@@ -25,7 +29,7 @@ impl Beam {
         Self {
             apex,
             normal,
-            edges: Vec::new(),
+            edges: Edges::new(),
             turn: 1.0,
         }
     }
@@ -36,7 +40,7 @@ impl Beam {
         // The hull runs anticlockwise about the facet's normal, so as seen from the side of the normal.
         let above = self.apex.dot(facet.normal) > facet.height;
         let turn = if above { 1.0 } else { -1.0 };
-        let mut edges: Vec<DVec3> = facet.hull.iter().map(|&c| c - self.apex).collect();
+        let mut edges: Edges = facet.hull.iter().map(|&c| c - self.apex).collect();
         if let Some(window) = window {
             // What lies past the window lies across its plane from the apex.
             let depth = self.apex.dot(window.normal) - window.height;
@@ -98,10 +102,16 @@ impl Beam {
 /// Form factor from a point with this unit normal to a flat convex polygon: the share of density cos θ/π that goes there,
 /// what lies below the horizon left out.
 pub(crate) fn form_factor(point: DVec3, normal: DVec3, corners: &[DVec3]) -> f64 {
-    let mut edges: Vec<DVec3> = corners.iter().map(|&c| c - point).collect();
+    let mut edges: Edges = corners.iter().map(|&c| c - point).collect();
     clip(&mut edges, normal, 0.0);
     drop_doubles(&mut edges);
     share(&edges, normal)
+}
+
+/// The same for all that lies within an outline of edges that run one way around, in any order: all of it above the horizon.
+pub(crate) fn form_factor_within(point: DVec3, normal: DVec3, outline: &[[DVec3; 2]]) -> f64 {
+    let edges = outline.iter().map(|edge| edge.map(|end| end - point));
+    shared(edges, normal)
 }
 
 /// Parts of a polygon that may be left of it before it is given up.
@@ -114,7 +124,7 @@ pub(crate) fn form_factor_behind(
     corners: &[DVec3],
     triangles: impl Iterator<Item = [DVec3; 3]>,
 ) -> Option<f64> {
-    let mut edges: Vec<DVec3> = corners.iter().map(|&c| c - point).collect();
+    let mut edges: Edges = corners.iter().map(|&c| c - point).collect();
     let [a, b, c, ..] = edges[..] else {
         return Some(0.0);
     };
@@ -125,7 +135,7 @@ pub(crate) fn form_factor_behind(
     clip(&mut edges, normal, 0.0);
     let mut parts = vec![edges];
     for triangle in triangles {
-        let mut shade: Vec<DVec3> = triangle.iter().map(|&corner| corner - point).collect();
+        let mut shade: Edges = triangle.iter().map(|&corner| corner - point).collect();
         clip(&mut shade, down, NEAREST * depth);
         // Corners in the polygon's plane are not to be cut off by their rounding.
         clip(&mut shade, -down, -depth * (1.0 + NEAREST));
@@ -155,7 +165,7 @@ const NEAREST: f64 = 1e-9;
 const FLAT: f64 = 1e-13;
 
 /// The convex parts of a convex polygon that are seen beside a convex shade.
-fn beside(part: Vec<DVec3>, shade: &[DVec3]) -> Vec<Vec<DVec3>> {
+fn beside(part: Edges, shade: &[DVec3]) -> Vec<Edges> {
     let next = || shade.iter().cycle().skip(1);
     let turn: f64 = {
         let middle: DVec3 = shade.iter().sum();
@@ -187,21 +197,26 @@ fn beside(part: Vec<DVec3>, shade: &[DVec3]) -> Vec<Vec<DVec3>> {
     left
 }
 
-/// Lambert's sum over the edges of a polygon, (1/2π) Σ γ **N**·(**e** × **e**′)/|**e** × **e**′| with γ the angle between
-/// neighbours.
+/// The share of density cos θ/π that goes through a polygon whose corners lie in these directions.
 fn share(edges: &[DVec3], normal: DVec3) -> f64 {
-    let Some(&(mut last)) = edges.last() else {
+    let Some(&last) = edges.last() else {
         return 0.0;
     };
+    let before = [last].into_iter().chain(edges.iter().copied());
+    shared(before.zip(edges).map(|(from, &to)| [from, to]), normal)
+}
+
+/// Lambert's sum over the edges of a polygon, (1/2π) Σ γ **N**·(**e** × **e**′)/|**e** × **e**′| with γ the angle between
+/// their ends.
+fn shared(edges: impl Iterator<Item = [DVec3; 2]>, normal: DVec3) -> f64 {
     let mut sum = 0.0;
-    for &edge in edges {
-        let across = last.cross(edge);
+    for [from, to] in edges {
+        let across = from.cross(to);
         let sine = across.length();
         if sine > 0.0 {
-            let angle = libm::atan2(sine, last.dot(edge));
+            let angle = libm::atan2(sine, from.dot(to));
             sum += angle * across.dot(normal) / sine;
         }
-        last = edge;
     }
     (sum.abs() / TAU).min(1.0)
 }
@@ -210,11 +225,11 @@ fn share(edges: &[DVec3], normal: DVec3) -> f64 {
 const DOUBLE: f64 = 1e-22;
 
 /// Leaves one of neighbouring edges in one direction.
-fn drop_doubles(edges: &mut Vec<DVec3>) {
+fn drop_doubles(edges: &mut Edges) {
     let Some(&(mut last)) = edges.last() else {
         return;
     };
-    edges.retain(|&edge| {
+    edges.retain(|&mut edge| {
         let across = last.cross(edge).length_squared();
         // From next to an edge its ends are seen in opposite directions, which no plane tells apart either.
         let apart =
@@ -227,14 +242,14 @@ fn drop_doubles(edges: &mut Vec<DVec3>) {
 }
 
 /// Leaves of a polygon, given from the apex, what lies at least at that height along a normal.
-fn clip(edges: &mut Vec<DVec3>, normal: DVec3, height: f64) {
+fn clip(edges: &mut Edges, normal: DVec3, height: f64) {
     if edges.iter().all(|edge| edge.dot(normal) >= height) {
         return;
     }
     let Some(&(mut last)) = edges.last() else {
         return;
     };
-    let mut kept = Vec::with_capacity(edges.len() + 1);
+    let mut kept = Edges::new();
     for &edge in edges.iter() {
         let (before, after) = (last.dot(normal) - height, edge.dot(normal) - height);
         if (before < 0.0) != (after < 0.0) {

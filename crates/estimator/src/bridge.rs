@@ -15,7 +15,11 @@ use std::ops::Range;
 
 /// Walks from the emitters that one walk from a sensor is joined to: where no ray has to tell what they see, and elsewhere.
 const WALKS_IN_CELLS: u64 = 16;
-const WALKS: u64 = 8;
+const WALKS: u64 = 4;
+
+/// What bridges count for in the weights where a ray has to tell: one landing stands for all of them then, and its luck for
+/// theirs.
+const UNSEEN: f64 = 0.3;
 
 /// How much of what such walks bring is chance that the walks from one sensor share, as they are joined to the same ones.
 const SHARED: f64 = 0.2;
@@ -44,21 +48,25 @@ pub(crate) fn walks(surfaces: &Surfaces) -> u64 {
 }
 
 /// What a block of so many walks from the emitters, that a walk from a sensor is joined to, counts for in the weights where
-/// `launched` of them are taken for one from the sensor.
+/// `launched` of them are taken for one from the sensor, and by a ray to one of their points unless the scene has `cells`.
 ///
 /// Where all walks from a sensor first scatter near one place, in a corner say, each is joined to about the same: then
 /// there is as much luck in all these bridges as in the walks from the emitters themselves.
-pub(crate) fn worth(block: u64, launched: f64) -> f64 {
+pub(crate) fn worth(block: u64, launched: f64, cells: bool) -> f64 {
     if block == 0 {
         return 0.0;
     }
-    1.0 / (1.0 / block as f64 + SHARED / launched)
+    let seen = if cells { 1.0 } else { UNSEEN };
+    seen / (1.0 / block as f64 + SHARED / launched)
 }
 
 /// The walks from the emitters, `partner` among them, that one from a sensor is joined to: so many, but fewer of the first, so
-/// that hardly a walk is taken for the sake of bridges alone.
+/// that hardly a walk is taken for the sake of bridges alone. A run that is looked at once an octave up to 16 walks, and four
+/// times an octave from then on, has launched whole blocks whenever it is.
 pub(crate) fn block(partner: u64, walks: u64) -> Range<u64> {
-    let size = (1 << partner.max(FEWEST).ilog2()).min(walks);
+    let octave = partner.max(FEWEST).ilog2();
+    let size = 1 << if octave < 4 { octave } else { octave - 2 };
+    let size = walks.min(size);
     let first = partner - partner % size;
     first..first + size
 }
@@ -323,8 +331,10 @@ mod tests {
                 assert!((FEWEST..=walks).contains(&(block.end - block.start)));
                 end = block.end;
             }
-            // A run that ends at a first look, of a power of two of walks, has launched no more.
-            for looked in [2, 4, 8, 16] {
+            // A run that ends where it is looked at has launched no more.
+            for looked in [
+                2, 4, 8, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 112, 128, 160,
+            ] {
                 assert_eq!(block(looked - 1, walks).end, looked);
             }
         }

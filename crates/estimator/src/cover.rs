@@ -63,6 +63,8 @@ pub(crate) struct Cover {
     room: f64,
     /// Of more than one: the greatest mirror-like reflectance at cosines k/STEPS.
     mirror: Vec<f64>,
+    /// See [`image`](Self::image), at the same cosines; empty where nothing is mirrored.
+    image: Vec<f64>,
     /// See [`launched`](Self::launched).
     launched: f64,
 }
@@ -88,17 +90,22 @@ impl Cover {
             even,
             room: 1.0,
             mirror: Vec::new(),
+            image: Vec::new(),
             launched: 1.0,
         };
         if cover.optics.len() > 1 {
-            let greatest = |step: usize| {
-                let cos = step as f64 / STEPS as f64;
-                let bound = |it: &Optics| it.mirror(cos, 1.0 - cos * cos).bound();
+            cover.mirror = table(|cos, sin2| {
+                let bound = |it: &Optics| it.mirror(cos, sin2).bound();
                 cover.optics.iter().map(bound).fold(0.0, f64::max).min(1.0)
-            };
-            cover.mirror = (0..=STEPS).map(greatest).collect();
+            });
             let both = mean(|cos| cover.scattered(cos, 1.0 - cos * cos) + cover.mirrored(cos));
             cover.room = 1.0 / both.max(1.0);
+        }
+        if cover.is_mirrorlike() {
+            cover.image = match &cover.optics[..] {
+                [alone] => table(|cos, sin2| alone.mirror(cos, sin2).mean()),
+                _ => cover.mirror.clone(),
+            };
         }
         let pane = cover.optics.iter().any(Optics::is_pane);
         if cover.even.is_some() && cover.scatters() && !pane {
@@ -154,22 +161,16 @@ impl Cover {
         }
     }
 
-    /// What is expected of an image: the mirror-like reflectance at an angle for unpolarised light; in several variants, the
-    /// greatest for any.
+    /// What is expected of an image, to choose one by: about the mirror-like reflectance at an angle for unpolarised light;
+    /// in several variants, the greatest for any.
     #[inline]
-    pub(crate) fn mirror_mean(&self, cos: f64, sin2: f64) -> f64 {
-        match &self.optics[..] {
-            [alone] => alone.mirror(cos, sin2).mean(),
-            _ => self.mirrored(cos),
-        }
+    pub(crate) fn image(&self, cos: f64) -> f64 {
+        read(&self.image, cos)
     }
 
     #[inline]
     fn mirrored(&self, cos: f64) -> f64 {
-        let at = cos.clamp(0.0, 1.0) * STEPS as f64;
-        let step = (at as usize).min(STEPS - 1);
-        let within = at - step as f64;
-        self.mirror[step] + within * (self.mirror[step + 1] - self.mirror[step])
+        read(&self.mirror, cos)
     }
 
     /// How a walk that meets the surface at this angle goes on; `mirror` and `through` are those of the first variant.
@@ -244,6 +245,26 @@ impl Cover {
                 });
                 square <= (2.0 * alone).min(1.0)
             })
+    }
+}
+
+/// Values at the cosines k/STEPS.
+fn table(value: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    let at = |step: usize| {
+        let cos = step as f64 / STEPS as f64;
+        value(cos, 1.0 - cos * cos)
+    };
+    (0..=STEPS).map(at).collect()
+}
+
+/// The value between those of a table, 0 of none.
+#[inline]
+fn read(table: &[f64], cos: f64) -> f64 {
+    let at = cos.clamp(0.0, 1.0) * STEPS as f64;
+    let step = (at as usize).min(STEPS - 1);
+    match table.get(step..step + 2) {
+        Some(&[one, next]) => one + (at - step as f64) * (next - one),
+        _ => 0.0,
     }
 }
 

@@ -1,11 +1,24 @@
 //! Directions as functions of uniform numbers.
 
 use glam::DVec3;
-use std::f64::consts::TAU;
+use std::f64::consts::FRAC_PI_2;
+
+/// Sine and cosine of a share of a full turn, 0 … 1: within an eighth of one, where neither needs a reduction, and turned
+/// by quarters.
+fn turned(turn: f64) -> (f64, f64) {
+    let quarters = (4.0 * turn + 0.5) as i32;
+    let (sin, cos) = libm::sincos(FRAC_PI_2 * (4.0 * turn - f64::from(quarters)));
+    match quarters & 3 {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
 
 /// A unit vector about `axis` at the given cosine and azimuth (a share of a full turn).
 fn about(axis: DVec3, cos: f64, sin: f64, turn: f64) -> DVec3 {
-    let (sin_azimuth, cos_azimuth) = libm::sincos(TAU * turn);
+    let (sin_azimuth, cos_azimuth) = turned(turn);
     let (x, y) = axis.any_orthonormal_pair();
     x * (sin * cos_azimuth) + y * (sin * sin_azimuth) + axis * cos
 }
@@ -28,7 +41,7 @@ pub(crate) fn in_cone(axis: DVec3, cos_edge: f64, [u, v]: [f64; 2]) -> DVec3 {
 /// Point with uniform density on the disc of the given radius about `centre`, across `axis`.
 #[must_use]
 pub(crate) fn on_disc(centre: DVec3, axis: DVec3, radius: f64, [u, v]: [f64; 2]) -> DVec3 {
-    let (sin_azimuth, cos_azimuth) = libm::sincos(TAU * v);
+    let (sin_azimuth, cos_azimuth) = turned(v);
     let (x, y) = axis.any_orthonormal_pair();
     centre + (x * cos_azimuth + y * sin_azimuth) * (radius * u.sqrt())
 }
@@ -36,6 +49,7 @@ pub(crate) fn on_disc(centre: DVec3, axis: DVec3, radius: f64, [u, v]: [f64; 2])
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     /// Means of cos θ and cos² θ over a midpoint lattice of `n` × `n` uniforms.
     fn moments(direction: impl Fn([f64; 2]) -> DVec3, axis: DVec3) -> [f64; 2] {
@@ -52,6 +66,16 @@ mod tests {
             }
         }
         sums.map(|s| s / f64::from(n * n))
+    }
+
+    #[test]
+    fn sine_and_cosine_go_around() {
+        for step in 0..=1024 {
+            let turn = f64::from(step) / 1024.0;
+            let (sin, cos) = turned(turn);
+            let expected = libm::sincos(TAU * turn);
+            assert!((sin - expected.0).abs() < 1e-15 && (cos - expected.1).abs() < 1e-15);
+        }
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Where light comes from: one table of everything that emits, sampled by flux.
 
 use crate::direction::{cosine_weighted, in_cone, on_disc};
+use crate::lamps::{Chosen, Lamps, Place};
+use crate::mirrors::Viewer;
 use crate::random::{Purpose, Uniforms};
 use crate::reading::Unmet;
 use crate::variation::{Origin, Variation};
@@ -8,6 +10,7 @@ use glam::DVec3;
 use malus_geometry::{Facet, Facets, Patches, Surfaces};
 use malus_scene::{Distribution, Material, Scene, Source, SourceKind};
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// All emitters of a scene: emitting triangles first, then sources without geometry, by cumulated flux.
 pub(crate) struct Emitters<'a> {
@@ -17,12 +20,21 @@ pub(crate) struct Emitters<'a> {
     triangles: Vec<u32>,
     /// Flux of the first i + 1 entries, triangles and then sources.
     cumulated: Vec<f64>,
+    /// The first entry that reaches each of as many equal steps of all flux as there are entries: where to look for one.
+    guide: Vec<u32>,
     /// Flat patches of triangles that emit unpolarised light and are hidden nowhere.
     patches: Facets,
+    /// What of all this lies together: the patches, as many sources as are left room for, and the rest.
+    lamps: Lamps,
+    /// The lamp of each patch.
+    lamp_of_patch: Vec<usize>,
 }
 
 /// Patches that a sensor may see whole; the light of others is sampled.
 const MOST_PATCHES: usize = 64;
+
+/// Sources without geometry that are told from each other where a point of a walk looks for one.
+const MOST_SOURCES: usize = 64;
 
 /// Which part of the table a vertex looks at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -168,15 +180,49 @@ impl<'a> Emitters<'a> {
             total += source_flux(source, surfaces);
             cumulated.push(total);
         }
+        let steps = (0..=cumulated.len()).map(|step| {
+            let below = total * (step as f64 / cumulated.len() as f64);
+            cumulated.partition_point(|&c| c <= below) as u32
+        });
+        let guide = steps.collect();
         let patches = Patches::new(surfaces, |t| even[t as usize]);
         let patches = Facets::new(surfaces, &patches, |_| true, 0.0, MOST_PATCHES);
+        let told = scene.sources.iter().take(MOST_SOURCES);
+        let places: Vec<Place> = (patches.list().iter().map(Place::Patch))
+            .chain(told.map(Place::Source))
+            .chain([Place::Rest])
+            .collect();
+        let rest = places.len() - 1;
+        // A patch of which some triangles face the other way shines on both sides.
+        let mut lamp_of_patch: Vec<usize> = (0..patches.list().len()).collect();
+        for &triangle in &triangles {
+            if let Some(patch) = patches.of(triangle)
+                && let facet = &patches.list()[patch as usize]
+                && surfaces.normal(triangle).dot(facet.normal) <= 0.0
+            {
+                lamp_of_patch[patch as usize] = rest;
+            }
+        }
+        let fluxes = cumulated.iter().scan(0.0, |before, &until| {
+            let flux = until - *before;
+            *before = until;
+            Some(flux)
+        });
+        let lamp = |entry: usize| match triangles.get(entry) {
+            Some(&triangle) => (patches.of(triangle)).map_or(rest, |it| lamp_of_patch[it as usize]),
+            None => (patches.list().len() + entry - triangles.len()).min(rest),
+        };
+        let lamps = Lamps::new(&places, fluxes.zip((0..).map(lamp)));
         Self {
             surfaces,
             materials: &scene.materials,
             sources: &scene.sources,
             triangles,
             cumulated,
+            guide,
             patches,
+            lamps,
+            lamp_of_patch,
         }
     }
 
@@ -247,13 +293,24 @@ impl<'a> Emitters<'a> {
             Choice::All => self.cumulated.len(),
         };
         let target = u * self.flux(choice);
-        let entry = self.cumulated[..count]
-            .partition_point(|&c| c <= target)
-            .min(count - 1);
-        let below = match entry {
+        let below = |entry: usize| match entry {
             0 => 0.0,
             _ => self.cumulated[entry - 1],
         };
+        let all = self.cumulated.len();
+        let step = (target / self.flux(Choice::All) * all as f64) as usize;
+        let [start, end] = [0, 1].map(|next| self.guide[(step + next).min(all)] as usize);
+        let search = |range: Range<usize>| {
+            let found = self.cumulated[range.clone()].partition_point(|&c| c <= target);
+            range.start + found
+        };
+        let mut entry = search(start..end);
+        // Rounding may have chosen the step beside.
+        if below(entry) > target || self.cumulated.get(entry).is_some_and(|&c| c <= target) {
+            entry = search(0..all);
+        }
+        let entry = entry.min(count - 1);
+        let below = below(entry);
         let within = (target - below) / (self.cumulated[entry] - below);
         (entry, within.clamp(0.0, 1.0 - f64::EPSILON))
     }
@@ -272,22 +329,52 @@ impl<'a> Emitters<'a> {
         exitance / self.flux(choice)
     }
 
-    /// One place of emission, chosen by flux; `None` where that is a hidden part of a surface.
-    pub(crate) fn look(&self, choice: Choice, [which, v, ..]: [f64; 4]) -> Option<Site<'a>> {
+    /// One place of emission for a viewer, with the probability of choosing it relative to a choice by flux; `None` where that
+    /// is a hidden part of a surface.
+    pub(crate) fn look(
+        &self,
+        choice: Choice,
+        viewer: &Viewer,
+        [which, v, ..]: [f64; 4],
+    ) -> Option<(Site<'a>, f64)> {
         let total = self.flux(choice);
         if total <= 0.0 {
             return None;
         }
-        let (entry, u) = self.entry(choice, which);
+        let Chosen {
+            entry,
+            within,
+            preference,
+        } = if self.lamps.guide(viewer) {
+            self.lamps.choose(viewer, which)
+        } else {
+            let (entry, within) = self.entry(choice, which);
+            Chosen {
+                entry,
+                within,
+                preference: 1.0,
+            }
+        };
         let Some(&triangle) = self.triangles.get(entry) else {
             let index = entry - self.triangles.len();
             let flux = source_flux(&self.sources[index], self.surfaces);
-            return Some(self.site_of_source(index, total / flux));
+            return Some((self.site_of_source(index, total / flux), preference));
         };
-        let position = self.surfaces.triangle(triangle).point_at([u, v]);
+        let position = self.surfaces.triangle(triangle).point_at([within, v]);
         self.surfaces
             .exposed(triangle, position)
-            .then(|| self.site_on(triangle, position, total))
+            .then(|| (self.site_on(triangle, position, total), preference))
+    }
+
+    /// Probability with which a viewer chooses a site, relative to a choice by flux.
+    pub(crate) fn preference(&self, viewer: &Viewer, site: &Site) -> f64 {
+        let patches = self.lamp_of_patch.len();
+        let lamp = match (site.origin, site.patch) {
+            (Origin::Source(index), _) if index < MOST_SOURCES => patches + index,
+            (Origin::Surface(_), Some(patch)) => self.lamp_of_patch[patch as usize],
+            _ => patches + self.sources.len().min(MOST_SOURCES),
+        };
+        self.lamps.preference(viewer, lamp)
     }
 
     /// A point of an emitting triangle as a site, out of a table of the flux `total`.

@@ -54,6 +54,7 @@ pub(crate) fn gather<const N: usize>(
         bridged: bridge::worth(
             passes.techniques.block,
             rivalry / f64::from(neighbours.round()),
+            passes.main.surfaces.has_cells(),
         ),
         ..passes.techniques
     };

@@ -3,7 +3,7 @@
 use crate::emitters::{Site, Start};
 use crate::lookout::Passed;
 use crate::medium::Medium;
-use crate::mirrors::Viewer;
+use crate::mirrors::{Chain, Viewer};
 use crate::techniques::Techniques;
 use glam::DVec3;
 
@@ -81,13 +81,17 @@ impl<'a> Launched<'a> {
             return left;
         }
         let area_density = self.site.area_density();
-        let probability = match self.chain.facets() {
+        let seen = match self.chain.facets() {
             Some([]) => 1.0,
             Some(facets) if techniques.mirrored => {
-                let seen: Vec<u32> = facets.iter().rev().copied().collect();
+                let seen: Chain = facets.iter().rev().copied().collect();
                 medium.chain_probability(&viewer, &self.site, &seen)
             }
             _ => 0.0,
+        };
+        let probability = match seen > 0.0 {
+            true => seen * medium.emitters.preference(&viewer, &self.site),
+            false => 0.0,
         };
         let arrived = self.site.launched(self.leaving, self.chain.square()) * cos * self.chain.odds;
         Rival {

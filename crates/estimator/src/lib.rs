@@ -18,6 +18,7 @@ mod exact;
 mod gather;
 mod glints;
 mod journey;
+mod lamps;
 mod launched;
 mod ledger;
 mod local;

@@ -2,7 +2,7 @@
 
 use crate::emitters::Choice;
 use crate::medium::Medium;
-use crate::mirrors::Viewer;
+use crate::mirrors::{Chain, Viewer};
 use crate::receiver::Receiver;
 use crate::sight::Seen;
 use crate::techniques::Techniques;
@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Passed {
     /// The mirrors, where all of them can be looked into; `None` once one cannot.
-    facets: Option<Vec<u32>>,
+    facets: Option<Chain>,
     /// Probability of the events on the way.
     pub odds: f64,
     /// Whether there was a pane.
@@ -27,7 +27,7 @@ impl Passed {
     /// Nothing passed yet.
     pub(crate) fn nothing() -> Self {
         Self {
-            facets: Some(Vec::new()),
+            facets: Some(Chain::new()),
             odds: 1.0,
             panes: false,
             length: 0.0,
@@ -56,7 +56,7 @@ impl Passed {
 
     /// Whether no mirror has been passed.
     pub(crate) fn is_straight(&self) -> bool {
-        self.facets.as_ref().is_some_and(Vec::is_empty)
+        self.facets.as_ref().is_some_and(Chain::is_empty)
     }
 
     /// Whether nothing has been passed.
@@ -250,12 +250,13 @@ impl Lookout {
         {
             return 0.0;
         }
+        let total = medium.emitters.flux(self.choice);
+        let site = medium.emitters.site_on(hit.triangle, hit.position, total);
+        let preference = || medium.emitters.preference(&self.viewer, &site);
         let probability = match self.chain.facets() {
-            Some([]) => 1.0,
+            Some([]) => preference(),
             Some(facets) if techniques.mirrored => {
-                let total = medium.emitters.flux(self.choice);
-                let site = medium.emitters.site_on(hit.triangle, hit.position, total);
-                medium.chain_probability(&self.viewer, &site, facets)
+                preference() * medium.chain_probability(&self.viewer, &site, facets)
             }
             _ => 0.0,
         };

@@ -3,7 +3,7 @@
 use crate::cover::{Cover, Odds};
 use crate::emitters::{Emitters, Site};
 use crate::glints::Glints;
-use crate::mirrors::{ASIDE, Drawn, Mirrors, Target, Viewer};
+use crate::mirrors::{ASIDE, Chain, Drawn, Mirrors, Target, Viewer};
 use crate::random::Fresh;
 use crate::spread::Spread;
 use crate::variation::Variation;
@@ -330,14 +330,14 @@ impl<'a> Medium<'a> {
         (image, mirrors): (DVec3, usize),
         mut choices: Fresh,
         steps: &mut Vec<Step>,
-    ) -> Option<(Way, Vec<u32>)> {
+    ) -> Option<(Way, Chain)> {
         let span = image - viewer.point;
         if span.dot(viewer.normal) <= 0.0 {
             return None;
         }
         let mut left = span.length();
         let start = span / left;
-        let mut chain = Vec::new();
+        let mut chain = Chain::new();
         let (mut odds, mut drawn) = (1.0, 1.0);
         let (mut from, mut toward) = (viewer.point, start);
         let before = steps.len();
@@ -399,21 +399,26 @@ impl<'a> Medium<'a> {
         Some((way, chain))
     }
 
-    /// The way from a viewer to a target as it was drawn, and its mirrors; `None` where there is none.
+    /// The way from a viewer to a target as it was drawn, and the probability with which the viewer draws its mirrors (see
+    /// [`Mirrors::probability`]); `None` where there is none.
     pub(crate) fn drawn(
         &self,
         viewer: &Viewer,
         target: &Target,
         drawn: Drawn,
         steps: &mut Vec<Step>,
-    ) -> Option<(Way, Vec<u32>)> {
+    ) -> Option<(Way, f64)> {
         match drawn {
-            Drawn::Chain(chain) => {
+            Drawn::Chain(chain, odds) => {
                 let way = self.chained(viewer, target, &chain, steps)?;
-                Some((way, chain))
+                Some((
+                    way,
+                    odds * self.mirrors.onward_along(viewer, target, &chain),
+                ))
             }
             Drawn::Image(image, mirrors, choices) => {
-                self.imaged(viewer, target, (image, mirrors), choices, steps)
+                let (way, chain) = self.imaged(viewer, target, (image, mirrors), choices, steps)?;
+                Some((way, self.mirrors.probability(viewer, target, &chain)))
             }
         }
     }

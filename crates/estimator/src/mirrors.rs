@@ -18,8 +18,15 @@ pub(crate) use image_sources::ImageSource;
 use image_sources::ImageSources;
 use malus_geometry::{Facet, Facets, Surfaces};
 use malus_scene::Source;
+use smallvec::SmallVec;
 use std::f64::consts::PI;
 use view::{Ray, View};
+
+/// Mirrors one behind the other, on the stack where there are few.
+pub(crate) type Chain = SmallVec<[u32; 4]>;
+
+/// What is known of each mirror that may come next, on the stack where there are few.
+type Each<T> = SmallVec<[T; 16]>;
 
 /// Flat mirrors that are looked into; light in others is met by chance.
 const MOST: usize = 64;
@@ -116,8 +123,9 @@ pub(crate) struct Viewer {
 
 /// What was drawn: where to look for the target.
 pub(crate) enum Drawn {
-    /// In a chain of mirrors, in the order in which the viewer sees them.
-    Chain(Vec<u32>),
+    /// In a chain of mirrors, in the order in which the viewer sees them; with the probability of drawing it, but for that
+    /// of following the light behind all of them but the last.
+    Chain(Chain, f64),
     /// At the place of an image behind so many mirrors, whichever they are: from a point the way there is unique, but for
     /// panes, at each of which it is drawn whether the way is mirrored or goes on.
     Image(DVec3, usize, Fresh),
@@ -231,7 +239,7 @@ impl Mirrors {
         depth: u32,
         mut found: impl FnMut(Drawn, f64),
     ) {
-        let [_, look, s, t] = uniforms.in_chain(depth, 0);
+        let [first, look, s, t] = uniforms.in_chain(depth, 0);
         let look_odds = self.look_odds(viewer);
         if self.is_empty() || look >= look_odds {
             return;
@@ -251,7 +259,10 @@ impl Mirrors {
             false => 0,
         };
         for order in 0..beams {
-            let [last, ..] = uniforms.in_chain(depth, order);
+            let last = match order {
+                0 => first,
+                _ => uniforms.in_chain(depth, order)[0],
+            };
             let [test, onward, select, _] = uniforms.in_chain(depth, order | 1 << 31);
             let odds = tested(order + 1);
             if test < odds
@@ -260,9 +271,10 @@ impl Mirrors {
             {
                 let mut facets = view.facets.clone();
                 facets.push(facet);
+                let drawn = view.share * odds * share;
                 found(
-                    Drawn::Chain(facets),
-                    1.0 / (view.share * odds * share * followed),
+                    Drawn::Chain(facets, look_odds * drawn),
+                    1.0 / (drawn * followed),
                 );
             }
             if !target.beam(order as usize + 2) {
@@ -354,7 +366,7 @@ impl Mirrors {
     }
 
     /// The same for the light itself, behind all mirrors of a chain but the last.
-    fn onward_along(&self, viewer: &Viewer, target: &Target, chain: &[u32]) -> f64 {
+    pub(crate) fn onward_along(&self, viewer: &Viewer, target: &Target, chain: &[u32]) -> f64 {
         let [before @ .., _] = chain else {
             return 1.0;
         };
@@ -394,9 +406,9 @@ impl Mirrors {
 
     /// What the target's image in each facet would send to the viewer were nothing in the way; those that send nothing
     /// are left out.
-    fn promises(&self, view: &View, target: &Target) -> Vec<(u32, f64)> {
+    fn promises(&self, view: &View, target: &Target) -> Each<(u32, f64)> {
         let beam = &view.beam;
-        let mut promises = Vec::with_capacity(self.facets.list().len());
+        let mut promises = Each::new();
         for (index, facet) in (0..).zip(self.facets.list()) {
             if view.facets.last() == Some(&index) {
                 continue;
@@ -424,7 +436,7 @@ impl Mirrors {
             let square = span.length_squared();
             let toward = span / square.sqrt();
             let cos = toward.dot(facet.normal).abs();
-            let mirror = self.covers[index as usize].mirror_mean(cos, 1.0 - cos * cos);
+            let mirror = self.covers[index as usize].image(cos);
             let leaving = facet.mirrored(-toward);
             let light = (target.strength)(leaving, square) * toward.dot(beam.normal) * mirror;
             if light > 0.0 && light.is_finite() {

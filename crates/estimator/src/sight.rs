@@ -1,9 +1,10 @@
 //! What sensors see straight of emitting surfaces, past little that stands before them: a form factor, not a sample.
 
-use crate::beam::{form_factor, form_factor_behind};
+use crate::beam::{form_factor, form_factor_behind, form_factor_within};
 use crate::emitters::Emitters;
 use crate::receiver::Receiver;
-use malus_geometry::Surfaces;
+use glam::DVec3;
+use malus_geometry::{Facet, Surfaces};
 use malus_scene::Material;
 use rayon::prelude::*;
 
@@ -80,6 +81,8 @@ struct Patches<'a> {
     surfaces: &'a Surfaces,
     emitters: &'a Emitters<'a>,
     triangles: Vec<Vec<u32>>,
+    /// Edges of each that belong to one triangle alone, as its normal has them run; none where its triangles face both ways.
+    outlines: Vec<Vec<[DVec3; 2]>>,
     /// Whether every emitting triangle belongs to one.
     complete: bool,
     /// How much may stand before a patch.
@@ -99,9 +102,18 @@ impl<'a> Patches<'a> {
                 None => complete = false,
             }
         }
+        let outline = |(facet, triangles): (&Facet, &Vec<u32>)| {
+            let faces = |&t: &u32| surfaces.normal(t).dot(facet.normal) > 0.0;
+            match triangles.iter().all(faces) {
+                true => outline(surfaces, triangles),
+                false => Vec::new(),
+            }
+        };
+        let facets = emitters.patches().iter();
         Self {
             surfaces,
             emitters,
+            outlines: facets.zip(&triangles).map(outline).collect(),
             triangles,
             complete,
             hidden: if panes { 0 } else { HIDDEN },
@@ -111,65 +123,81 @@ impl<'a> Patches<'a> {
     fn from(&self, receiver: &Receiver) -> (Seen, Vec<(u32, f64)>) {
         let mut seen = Seen::default();
         let mut view: Vec<(u32, f64)> = Vec::new();
-        for (patch, (facet, triangles)) in self
-            .emitters
-            .patches()
-            .iter()
-            .zip(&self.triangles)
-            .enumerate()
-        {
-            let first = view.len();
-            let mut add = |triangle: u32, factor: f64| {
-                let surface = self.surfaces.surface(triangle);
-                match view[first..].iter_mut().find(|entry| entry.0 == surface) {
-                    Some(entry) => entry.1 += factor,
-                    None if factor > 0.0 => view.push((surface, factor)),
-                    None => {}
-                }
-            };
-            let whole: Vec<(u32, f64)> = triangles
-                .iter()
-                .map(|&triangle| (triangle, self.form_factor(receiver, triangle)))
-                .filter(|&(_, factor)| factor > 0.0)
-                .collect();
+        for (patch, facet) in self.emitters.patches().iter().enumerate() {
+            let whole = self.whole(receiver, patch);
             // In the dark nothing needs to be known of what stands before it.
-            let before = match whole[..] {
-                [] => Some(Vec::new()),
-                _ => self
+            let seen_of_it = match whole > 0.0 {
+                false => Some(0.0),
+                true => self
                     .surfaces
-                    .before(receiver.origin, &facet.hull, self.hidden),
+                    .before(receiver.origin, &facet.hull, self.hidden)
+                    .and_then(|before| match before[..] {
+                        [] => Some(whole),
+                        _ => self.left(receiver, patch, &before),
+                    }),
             };
-            let left = |&(triangle, factor): &(u32, f64), before: &[u32]| match before {
-                [] => Some((triangle, factor)),
-                _ => Some((triangle, self.left(receiver, triangle, before)?)),
+            let Some(factor) = seen_of_it else {
+                continue;
             };
-            let seen_of_it: Option<Vec<(u32, f64)>> =
-                before.and_then(|before| whole.iter().map(|it| left(it, &before)).collect());
-            if let Some(seen_of_it) = seen_of_it {
-                seen.patches |= 1 << patch;
-                for (triangle, factor) in seen_of_it {
-                    add(triangle, factor);
-                }
+            seen.patches |= 1 << patch;
+            let surface = self.surfaces.surface(facet.triangle);
+            match view.iter_mut().find(|entry| entry.0 == surface) {
+                Some(entry) => entry.1 += factor,
+                None if factor > 0.0 => view.push((surface, factor)),
+                None => {}
             }
         }
         seen.all = self.complete && seen.patches.count_ones() as usize == self.triangles.len();
         (seen, view)
     }
 
-    /// 0 behind the triangle and below the horizon.
-    fn form_factor(&self, receiver: &Receiver, triangle: u32) -> f64 {
-        let corners = self.surfaces.triangle(triangle).vertices;
-        let above = (receiver.origin - corners[0]).dot(self.surfaces.normal(triangle));
-        if above <= 0.0 {
-            return 0.0;
+    /// The form factor to a patch before which nothing stands.
+    fn whole(&self, receiver: &Receiver, patch: usize) -> f64 {
+        let Receiver { origin, normal, .. } = *receiver;
+        let facet = &self.emitters.patches()[patch];
+        let outline = &self.outlines[patch];
+        let horizon = origin.dot(normal);
+        let risen = |[from, _]: &[DVec3; 2]| from.dot(normal) > horizon;
+        if !outline.is_empty() && facet.above(origin) > 0.0 && outline.iter().all(risen) {
+            return form_factor_within(origin, normal, outline);
         }
-        form_factor(receiver.origin, receiver.normal, &corners)
+        let lit = self.lit(receiver, patch);
+        lit.map(|corners| form_factor(origin, normal, &corners))
+            .sum()
     }
 
-    /// The same of what is seen past others; `None` where these leave too many parts.
-    fn left(&self, receiver: &Receiver, triangle: u32, before: &[u32]) -> Option<f64> {
-        let corners = self.surfaces.triangle(triangle).vertices;
+    /// The same of what is seen past triangles that stand before it; `None` where these leave too many parts.
+    fn left(&self, receiver: &Receiver, patch: usize, before: &[u32]) -> Option<f64> {
+        let Receiver { origin, normal, .. } = *receiver;
         let before = before.iter().map(|&it| self.surfaces.triangle(it).vertices);
-        form_factor_behind(receiver.origin, receiver.normal, &corners, before)
+        self.lit(receiver, patch)
+            .map(|corners| form_factor_behind(origin, normal, &corners, before.clone()))
+            .sum()
     }
+
+    /// Corners of the triangles of a patch that turn their front to a sensor.
+    fn lit(&self, receiver: &Receiver, patch: usize) -> impl Iterator<Item = [DVec3; 3]> {
+        let origin = receiver.origin;
+        self.triangles[patch].iter().filter_map(move |&triangle| {
+            let corners = self.surfaces.triangle(triangle).vertices;
+            let above = (origin - corners[0]).dot(self.surfaces.normal(triangle));
+            (above > 0.0).then_some(corners)
+        })
+    }
+}
+
+/// Edges that belong to one of these triangles alone.
+fn outline(surfaces: &Surfaces, triangles: &[u32]) -> Vec<[DVec3; 2]> {
+    let mesh = surfaces.mesh();
+    let corners = |&triangle: &u32| mesh.triangles[triangle as usize];
+    let edges = triangles
+        .iter()
+        .map(corners)
+        .flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let mut sorted: Vec<[u32; 2]> = edges.clone().collect();
+    sorted.sort_unstable();
+    edges
+        .filter(|&[from, to]| sorted.binary_search(&[to, from]).is_err())
+        .map(|edge| edge.map(|vertex| mesh.positions[vertex as usize]))
+        .collect()
 }

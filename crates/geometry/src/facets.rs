@@ -8,6 +8,9 @@ use glam::{DVec2, DVec3};
 /// Corners of the longest hull that is kept; a rounder one is replaced by its rectangle.
 const CORNERS: usize = 8;
 
+/// Edges of a polygon along which a rectangle about it is tried: of a disc every one is as good.
+const SIDES: usize = 16;
+
 /// A flat patch of a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Facet {
@@ -36,6 +39,12 @@ pub struct Facets {
 }
 
 impl Facet {
+    /// A ball about the hull: its centre and the square of its radius, in m and m².
+    #[must_use]
+    pub fn ball(&self) -> (DVec3, f64) {
+        self.centre
+    }
+
     /// Height of a point over the plane, in m.
     #[must_use]
     #[inline]
@@ -236,11 +245,14 @@ fn convex(mut points: Vec<DVec2>) -> Vec<DVec2> {
     lower
 }
 
-/// The smallest rectangle about a convex polygon that has a side along one of its edges.
+/// The smallest rectangle about a convex polygon that has a side along one of its longest edges.
 fn rectangle(corners: &[DVec2]) -> Vec<DVec2> {
-    let count = corners.len();
-    let about = |index: usize| {
-        let along = (corners[(index + 1) % count] - corners[index]).normalize();
+    let next = corners.iter().cycle().skip(1);
+    let mut edges: Vec<DVec2> = corners.iter().zip(next).map(|(a, &b)| b - a).collect();
+    edges.sort_by(|a, b| b.length_squared().total_cmp(&a.length_squared()));
+    edges.truncate(SIDES);
+    let about = |edge: DVec2| {
+        let along = edge.normalize();
         let extent = |axis: DVec2| {
             let heights = corners.iter().map(|p| p.dot(axis));
             heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| {
@@ -250,7 +262,8 @@ fn rectangle(corners: &[DVec2]) -> Vec<DVec2> {
         (along, extent(along), extent(along.perp()))
     };
     let area = |&(_, x, y): &(DVec2, (f64, f64), (f64, f64))| (x.1 - x.0) * (y.1 - y.0);
-    let best = (0..count)
+    let best = edges
+        .into_iter()
         .map(about)
         .min_by(|a, b| area(a).total_cmp(&area(b)));
     let Some((along, (left, right), (bottom, top))) = best else {

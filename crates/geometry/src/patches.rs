@@ -107,13 +107,26 @@ impl Neighbours {
         surfaces.mesh().triangles[triangle as usize].map(|v| self.welded[v as usize])
     }
 
+    /// The triangles about a vertex, in order.
+    fn about(&self, vertex: u32) -> &[u32] {
+        let [start, end] = [vertex, vertex + 1].map(|v| self.starts[v as usize] as usize);
+        &self.about[start..end]
+    }
+
     fn at<'a>(&'a self, surfaces: &'a Surfaces, triangle: u32) -> impl Iterator<Item = u32> + 'a {
         let [a, b, c] = self.corners(surfaces, triangle);
         [(a, b), (b, c), (c, a)]
             .into_iter()
             .flat_map(move |(one, other)| {
-                let [start, end] = [one, one + 1].map(|v| self.starts[v as usize] as usize);
-                let about = self.about[start..end].iter().copied();
+                // About the hub of a fan lie all of its triangles.
+                let ends = [(one, other), (other, one)];
+                let [about, next] = ends.map(|(from, to)| (self.about(from), to));
+                let (about, other) = if next.0.len() < about.0.len() {
+                    next
+                } else {
+                    about
+                };
+                let about = about.iter().copied();
                 about.filter(move |&t| self.corners(surfaces, t).contains(&other))
             })
     }

@@ -114,7 +114,7 @@ fn principal_root(re: f64, im: f64) -> (f64, f64) {
     if greater == 0.0 {
         return (0.0, 0.0);
     }
-    let lesser = 0.5 * im / greater;
+    let lesser = if im > 0.0 { 0.5 * im / greater } else { 0.0 };
     if re >= 0.0 {
         (greater, lesser)
     } else {

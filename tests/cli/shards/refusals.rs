@@ -112,10 +112,10 @@ fn a_damaged_shard_is_told_by_its_name() {
             "{told}"
         );
     }
-    std::fs::write(&path, b"malus state 7\n...").unwrap();
+    std::fs::write(&path, b"malus state 8\n...").unwrap();
     assert_told(
         &folder.unmerged(&["out"]),
-        &["is of form 7, this version of malus reads form 8"],
+        &["is of form 8, this version of malus reads form 9"],
     );
 }
 

@@ -1,6 +1,6 @@
 //! Following a beam and a ray from mirror to mirror.
 
-use super::{Mirrors, Viewer};
+use super::{Chain, Each, Mirrors, Viewer};
 use crate::beam::Beam;
 use glam::DVec3;
 use malus_geometry::Facet;
@@ -11,7 +11,7 @@ const NARROWEST: f64 = 1e-10;
 /// What is seen of the mirrors behind the first of a chain.
 pub(super) struct View {
     pub beam: Beam,
-    pub facets: Vec<u32>,
+    pub facets: Chain,
     /// Share of all directions, weighted by the cosine, that goes through these mirrors.
     pub share: f64,
 }
@@ -20,7 +20,7 @@ impl View {
     pub fn new(viewer: &Viewer) -> Self {
         Self {
             beam: Beam::hemisphere(viewer.point, viewer.normal),
-            facets: Vec::new(),
+            facets: Chain::new(),
             share: 1.0,
         }
     }
@@ -65,7 +65,7 @@ pub(super) struct Ray {
     pub direction: DVec3,
     /// Distance from the apex to the last mirror, in m.
     passed: f64,
-    pub facets: Vec<u32>,
+    pub facets: Chain,
 }
 
 impl Ray {
@@ -74,7 +74,7 @@ impl Ray {
             apex: viewer.point,
             direction,
             passed: 0.0,
-            facets: Vec::new(),
+            facets: Chain::new(),
         }
     }
 
@@ -91,7 +91,7 @@ impl Mirrors {
     /// One of the facets that a ray goes through next, with the probability of that choice: each is taken before those
     /// behind it as often as not.
     pub(super) fn met(&self, ray: &Ray, u: f64) -> Option<(u32, f64)> {
-        let mut crossed: Vec<(f64, u32)> = Vec::with_capacity(self.facets.list().len());
+        let mut crossed: Each<(f64, u32)> = Each::new();
         for (index, facet) in (0..).zip(self.facets.list()) {
             if ray.facets.last() != Some(&index)
                 && let Some(at) = facet.crossing(ray.apex, ray.direction)

@@ -40,7 +40,7 @@ impl<'a> Walk<'a> {
             emitters, mirrors, ..
         } = self.medium;
         let uniforms = self.uniforms.at(self.depth, Purpose::Connect);
-        let Some(site) = emitters.look(choice, uniforms) else {
+        let Some((site, preference)) = emitters.look(choice, &viewer, uniforms) else {
             return;
         };
         let area_density = site.area_density();
@@ -50,7 +50,7 @@ impl<'a> Walk<'a> {
                 let cos = toward.dot(viewer.normal);
                 let by_chance = site.launched(leaving, square) * cos * odds;
                 let density = area_density.unwrap_or(1.0);
-                let looked = probability * density;
+                let looked = probability * preference * density;
                 if looked <= 0.0 {
                     return 0.0;
                 }
@@ -61,7 +61,7 @@ impl<'a> Walk<'a> {
                 };
                 let local = coupling(toward) * by_chance * density;
                 let weight = share_of(met / looked, local / looked);
-                site.irradiance(leaving, square) * cos * inverse * weight
+                site.irradiance(leaving, square) * cos * inverse / preference * weight
             };
         let first = path.steps.len();
         let span = site
@@ -104,14 +104,9 @@ impl<'a> Walk<'a> {
             |drawn, inverse| {
                 let first = path.steps.len();
                 let found = self.medium.drawn(&viewer, &target, drawn, &mut path.steps);
-                let Some((way, chain)) = found else {
+                let Some((way, probability)) = found else {
                     path.steps.truncate(first);
                     return;
-                };
-                // Before a single mirror no ray was drawn that the light may differ from.
-                let probability = match chain[..] {
-                    [_] => 1.0 / inverse,
-                    _ => mirrors.probability(&viewer, &target, &chain),
                 };
                 let (toward, leaving) = (way.start, -way.arriving);
                 path.connections.push(Connection {

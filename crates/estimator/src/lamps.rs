@@ -1,0 +1,292 @@
+//! Which lamp a point of a walk looks at: mostly one that would send it much were nothing in the way.
+//!
+//! Of the lamps of a large room a point sees two or three well. Were they chosen by flux alone, the variance of what one look
+//! brings would grow as their number.
+
+use crate::mirrors::Viewer;
+use glam::DVec3;
+use malus_geometry::Facet;
+use malus_scene::{Source, SourceKind};
+use smallvec::SmallVec;
+use std::f64::consts::PI;
+
+/// Share of the looks that go by what lamps would send. The others go by flux: for what is seen in mirrors, and past what
+/// stands before the best.
+const GUIDED: f64 = 0.75;
+
+/// Where a lamp is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Place<'a> {
+    /// A flat patch that emits on the side of its normal.
+    Patch(&'a Facet),
+    /// A source without geometry.
+    Source(&'a Source),
+    /// Here and there: chosen by flux alone.
+    Rest,
+}
+
+/// All entries of a table of emitters, parted into lamps.
+#[derive(Debug)]
+pub(crate) struct Lamps {
+    lamps: Vec<Lamp>,
+    /// Whether there is something to choose between.
+    several: bool,
+    /// Share of all flux that has no place.
+    rest: f64,
+}
+
+/// Emitters that lie together.
+#[derive(Debug)]
+struct Lamp {
+    /// Its share of all flux.
+    share: f64,
+    /// Its entries of the table, and the flux of the first i + 1 of them as a share of the lamp's.
+    entries: Vec<(u32, f64)>,
+    reach: Reach,
+}
+
+/// What a lamp sends to a point.
+#[derive(Debug)]
+enum Reach {
+    /// Of a flat patch.
+    Patch {
+        centre: DVec3,
+        normal: DVec3,
+        radius: f64,
+        flux: f64,
+    },
+    Source(SourceKind),
+    Unknown,
+}
+
+/// An emitter that a point looks at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Chosen {
+    /// Its entry of the table.
+    pub entry: usize,
+    /// Where within that: a uniform number, so that points next to each other look at places next to each other.
+    pub within: f64,
+    /// Probability of the choice relative to one by flux.
+    pub preference: f64,
+}
+
+impl Lamps {
+    /// Parts a table into lamps at these places; `entries` are the flux of each entry and the number of its lamp.
+    pub(crate) fn new(places: &[Place], entries: impl Iterator<Item = (f64, usize)>) -> Self {
+        let mut lamps: Vec<Lamp> = places.iter().map(|_| Lamp::empty()).collect();
+        for (entry, (flux, lamp)) in (0..).zip(entries) {
+            let lamp = &mut lamps[lamp];
+            lamp.share += flux;
+            lamp.entries.push((entry, lamp.share));
+        }
+        let total: f64 = lamps.iter().map(|lamp| lamp.share).sum();
+        let mut rest = 0.0;
+        for (lamp, place) in lamps.iter_mut().zip(places) {
+            let flux = lamp.share;
+            for (_, until) in &mut lamp.entries {
+                *until /= flux;
+            }
+            lamp.share = flux / total;
+            lamp.reach = Reach::of(place, flux);
+            if let Place::Rest = place {
+                rest += lamp.share;
+            }
+        }
+        let shining = lamps.iter().filter(|lamp| lamp.share > 0.0).count();
+        Self {
+            lamps,
+            several: shining > 1 && rest < 1.0,
+            rest,
+        }
+    }
+
+    /// Whether a viewer prefers some of them: sensors know what they see straight.
+    pub(crate) fn guide(&self, viewer: &Viewer) -> bool {
+        self.several && !viewer.sensor
+    }
+
+    /// Chooses an emitter for a viewer that they guide, by a uniform number.
+    pub(crate) fn choose(&self, viewer: &Viewer, u: f64) -> Chosen {
+        let promises = self.promises(viewer);
+        let all: f64 = promises.iter().sum();
+        let mut below = 0.0;
+        let mut chosen = (&self.lamps[0], 0.0, 1.0);
+        for (lamp, promise) in self.lamps.iter().zip(promises) {
+            let preference = self.preferred(lamp, promise, all);
+            let probability = lamp.share * preference;
+            if probability > 0.0 {
+                let within = ((u - below) / probability).clamp(0.0, 1.0 - f64::EPSILON);
+                chosen = (lamp, within, preference);
+            }
+            below += probability;
+            if u < below {
+                break;
+            }
+        }
+        let (lamp, within, preference) = chosen;
+        let (entry, within) = lamp.entry(within);
+        Chosen {
+            entry,
+            within,
+            preference,
+        }
+    }
+
+    /// Probability with which a viewer chooses an emitter of a lamp, relative to a choice by flux.
+    pub(crate) fn preference(&self, viewer: &Viewer, lamp: usize) -> f64 {
+        if !self.guide(viewer) {
+            return 1.0;
+        }
+        let promises = self.promises(viewer);
+        self.preferred(&self.lamps[lamp], promises[lamp], promises.iter().sum())
+    }
+
+    fn preferred(&self, lamp: &Lamp, promise: f64, all: f64) -> f64 {
+        match lamp.reach {
+            Reach::Unknown => 1.0,
+            _ if all <= 0.0 || lamp.share <= 0.0 => 1.0,
+            _ => 1.0 - GUIDED + GUIDED * (1.0 - self.rest) * promise / (all * lamp.share),
+        }
+    }
+
+    /// About the irradiance that a viewer receives from each, were nothing in the way.
+    fn promises(&self, viewer: &Viewer) -> SmallVec<[f64; 16]> {
+        let promise = |lamp: &Lamp| {
+            let promise = lamp.reach.promise(viewer);
+            if promise.is_finite() { promise } else { 0.0 }
+        };
+        self.lamps.iter().map(promise).collect()
+    }
+}
+
+impl Lamp {
+    fn empty() -> Self {
+        Self {
+            share: 0.0,
+            entries: Vec::new(),
+            reach: Reach::Unknown,
+        }
+    }
+
+    /// The entry that a uniform number chooses by flux, and where within it.
+    fn entry(&self, u: f64) -> (usize, f64) {
+        let last = self.entries.len().saturating_sub(1);
+        let place = self.entries.partition_point(|it| it.1 <= u).min(last);
+        let below = match place {
+            0 => 0.0,
+            _ => self.entries[place - 1].1,
+        };
+        let (entry, until) = self.entries[place];
+        let within = (u - below) / (until - below);
+        (entry as usize, within.clamp(0.0, 1.0 - f64::EPSILON))
+    }
+}
+
+impl Reach {
+    fn of(place: &Place, flux: f64) -> Self {
+        match place {
+            Place::Patch(facet) => {
+                let (centre, square) = facet.ball();
+                Self::Patch {
+                    centre,
+                    normal: facet.normal,
+                    radius: square.sqrt(),
+                    flux,
+                }
+            }
+            Place::Source(source) => Self::Source(source.kind.clone()),
+            Place::Rest => Self::Unknown,
+        }
+    }
+
+    fn promise(&self, viewer: &Viewer) -> f64 {
+        match self {
+            Self::Patch {
+                centre,
+                normal,
+                radius,
+                flux,
+            } => {
+                let span = centre - viewer.point;
+                let square = span.length_squared() + radius * radius;
+                // Some of it may stand above the horizon where its centre does not.
+                let received = (span.dot(viewer.normal) + radius).max(0.0);
+                let sent = -span.dot(*normal).min(0.0);
+                flux / PI * received * sent / (square * square)
+            }
+            Self::Source(SourceKind::Point {
+                position,
+                intensity,
+                distribution,
+            }) => {
+                let span = position - viewer.point;
+                let square = span.length_squared();
+                let toward = span / square.sqrt();
+                let received = toward.dot(viewer.normal).max(0.0);
+                intensity * distribution.share(-toward) * received / square
+            }
+            Self::Source(SourceKind::Distant {
+                direction,
+                irradiance,
+            }) => irradiance * -direction.dot(viewer.normal).min(0.0),
+            Self::Unknown => 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use malus_scene::Distribution;
+
+    fn point(position: DVec3, intensity: f64) -> Source {
+        Source {
+            name: String::new(),
+            kind: SourceKind::Point {
+                position,
+                intensity,
+                distribution: Distribution::Isotropic,
+            },
+            state: [1.0, 0.0, 0.0, 0.0],
+            axis: DVec3::X,
+        }
+    }
+
+    #[test]
+    fn every_emitter_is_chosen_as_often_as_its_preference_says() {
+        let (near, far) = (point(DVec3::Z, 1.0), point(DVec3::new(9.0, 0.0, 1.0), 4.0));
+        let places = [Place::Source(&near), Place::Source(&far), Place::Rest];
+        // The last two have no place.
+        let fluxes = [1.0, 4.0, 2.0, 3.0];
+        let lamps = Lamps::new(&places, fluxes.into_iter().zip([0, 1, 2, 2]));
+        let viewer = Viewer {
+            point: DVec3::ZERO,
+            normal: DVec3::Z,
+            sensor: false,
+        };
+        assert!(lamps.guide(&viewer));
+        assert!(!lamps.guide(&Viewer {
+            sensor: true,
+            ..viewer
+        }));
+        const DRAWS: u32 = 100_000;
+        let mut counts = [0u32; 4];
+        for draw in 0..DRAWS {
+            let u = (f64::from(draw) + 0.5) / f64::from(DRAWS);
+            let chosen = lamps.choose(&viewer, u);
+            assert!((0.0..1.0).contains(&chosen.within));
+            let lamp = [0, 1, 2, 2][chosen.entry];
+            let preference = lamps.preference(&viewer, lamp);
+            assert!((chosen.preference - preference).abs() < 1e-15);
+            counts[chosen.entry] += 1;
+        }
+        for ((count, flux), lamp) in counts.into_iter().zip(fluxes).zip([0, 1, 2, 2]) {
+            let expected = flux / 10.0 * lamps.preference(&viewer, lamp);
+            assert!((f64::from(count) / f64::from(DRAWS) - expected).abs() < 1.1e-5);
+        }
+        // Of the half that has a place, three quarters are guided: E = I cos θ/r² is 1 and 4/82^(3/2).
+        let promised = [1.0, 4.0 / 82f64.powf(1.5)];
+        let guided = 0.75 * 0.5 * promised[0] / (promised[0] + promised[1]);
+        assert!((0.1 * lamps.preference(&viewer, 0) - (0.1 * 0.25 + guided)).abs() < 1e-14);
+    }
+}
