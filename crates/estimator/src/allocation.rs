@@ -5,17 +5,8 @@
 //! each of them errs at every sensor. The shares are then those that bring all sensors to one relative error at the least
 //! cost; as they depend on scene and seed alone, the sums of a run do not depend on when it stops.
 
-use crate::bridge::Launches;
-use crate::gather::{Aims, Observers, gather};
-use crate::local::{Sensors, local};
-use crate::medium::Medium;
-use crate::neighbours::{Neighbours, shared_out};
-use crate::pass::{Channels, Effort, Passes};
-use crate::random::Stream;
-use crate::receiver::Receiver;
-use crate::statistics::REPLICAS;
-use malus_geometry::Targets;
-use rayon::prelude::*;
+use crate::pass::Passes;
+use crate::pilot::{Findings, Need, Pilot, Stations};
 use serde::{Deserialize, Serialize};
 
 /// A sensor's share of walks is a multiple of one over this.
@@ -29,29 +20,6 @@ const TIMES: u32 = 4;
 
 /// Share with which the pilot weighs the two kinds of walk against each other, in parts.
 const TRIED: u32 = PARTS / 8;
-
-/// Rounds of the pilot, and in one round the walks from the emitters and those from all sensors, of which each has one at
-/// least.
-const ROUNDS: u32 = 12;
-const LAUNCHED: u64 = 4;
-const GATHERED: u64 = 16;
-
-/// By how much less walks from the emitters err in a run, whose points are many and spread evenly. Far from walls their
-/// light is smooth; it is not where walks from the sensors are needed.
-const EVEN: f64 = 5.0;
-
-/// Walks from one sensor that tell as much of its variance as the mean over all sensors does.
-const TELLING: f64 = 16.0;
-
-/// The same where nothing is scattered and sensors see lamps by mirrors alone, of which each has some of its own.
-const TELLING_BETWEEN_MIRRORS: f64 = 4.0;
-
-/// Cost of a ray, of joining a vertex to a sensor, of looking into mirrors from a vertex, and of a bridge between two, relative to
-/// each other.
-const RAY: f64 = 1.0;
-const JOIN: f64 = 0.2;
-const LOOK: f64 = 4.0;
-const BRIDGE: f64 = 0.03;
 
 /// How much a walk from the emitters counts for where differences between means over many points are asked for.
 const IN_DIFFERENCES: f64 = 0.2;
@@ -79,20 +47,6 @@ impl Sharing<'_> {
             Self::Like(allocation) => allocation.trust,
         }
     }
-}
-
-/// The sensors of a run, for a pilot to take walks from.
-pub(crate) struct Stations<'a> {
-    /// Each of them.
-    pub receivers: &'a [Receiver],
-    /// The same, to be asked which of them a point sees.
-    pub targets: &'a Targets,
-    /// How each aims at small mirrors.
-    pub aims: &'a [Aims<'a>],
-    /// To which neighbours each belongs.
-    pub memberships: Vec<usize>,
-    /// Whether neighbours share walks.
-    pub share: bool,
 }
 
 /// Walks from each sensor, relative to those from the emitters, as the pilot of a run has found them.
@@ -174,105 +128,38 @@ impl Allocation {
     pub(crate) fn piloted(
         passes: &Passes,
         stations: Stations,
+        memberships: Vec<usize>,
         exact: impl Fn(usize) -> f64,
         seed: u64,
         sharing: Sharing,
     ) -> Self {
-        let Stations {
-            receivers,
-            targets,
-            aims,
-            memberships,
-            share,
-        } = stations;
-        let trust = sharing.trust();
-        let sensors = receivers.len();
-        let free: Vec<usize> = (0..sensors)
-            .filter(|&s| !receivers[s].enclosed && receivers[s].is_irradiance())
-            .collect();
-        let walks = (GATHERED / free.len().max(1) as u64).max(1);
-        let pilot = Pilot {
-            walks,
-            taking: receivers.iter().filter(|it| !it.enclosed).count(),
-            // The main model of the first variant alone, and of that S0 alone: the walks are the same.
-            passes: Passes {
-                main: Medium {
-                    variations: &passes.main.variations[..1],
-                    ..passes.main
-                },
-                apart: None,
-                ..*passes
-            },
-            channels: Channels::of_intensity(),
-            receivers,
-            targets,
-            share,
-            neighbours: Neighbours::all(
-                passes.main.surfaces,
-                receivers,
-                &memberships,
-                &vec![1; sensors],
-                share,
-            ),
-            aims,
-            tried: Self {
-                parts: vec![TRIED; sensors],
-                trust,
-                ..Self::even(memberships)
-            },
+        let sensors = memberships.len();
+        let tried = Self {
+            parts: vec![TRIED; sensors],
+            trust: sharing.trust(),
+            ..Self::even(memberships)
         };
-        let rounds: Vec<Round> = (0..ROUNDS)
-            .into_par_iter()
-            // Beyond the streams of the run and of its pictures, so that no walk of the run is known beforehand.
-            .map(|round| pilot.round(Stream::new(seed, 2 * REPLICAS + round)))
-            .collect();
-        let mut needs: Vec<Need> = free
-            .iter()
-            .map(|&sensor| Need::of(&rounds, walks, sensor, exact(sensor)))
-            .collect();
-        let mean = needs.iter().map(|n| n.mean).sum::<f64>() / needs.len().max(1) as f64;
-        for need in &mut needs {
-            let square = need.mean.max(1e-3 * mean).powi(2);
-            need.launched /= square;
-            need.gathered /= square;
-        }
-        // So few walks seldom meet what is rare and bright, and then at few sensors: what one has met warns the others.
-        let gathered = needs.iter().map(|n| n.gathered).sum::<f64>() / needs.len().max(1) as f64;
-        let own = f64::from(ROUNDS) * walks as f64;
-        let telling = match needs.iter().all(|n| n.launched <= 0.0) {
-            true => TELLING_BETWEEN_MIRRORS,
-            false => TELLING,
-        };
-        for need in &mut needs {
-            need.gathered = (own * need.gathered + telling * gathered) / (own + telling);
-        }
-        let launched = f64::from(ROUNDS) * LAUNCHED as f64;
-        let cost_launched = rounds.iter().map(|r| r.cost_launched).sum::<f64>() / launched;
-        let gathered = own * free.len() as f64;
-        let cost_gathered = rounds.iter().map(|r| r.cost_gathered).sum::<f64>() / gathered;
+        let pilot = Pilot::new(passes, stations, &tried);
+        let Findings { needs, costs } = pilot.find(exact, seed);
         let mut shares = Self {
             parts: vec![PARTS; sensors],
-            ..pilot.tried
+            ..tried.clone()
         };
-        if let Some(shared) = cheapest(&needs, cost_launched, cost_gathered) {
-            for (&sensor, need) in free.iter().zip(&needs) {
+        if let Some(shared) = cheapest(&needs, costs) {
+            for need in &needs {
                 let parts = f64::from(PARTS) * need.gathered / (shared - need.launched);
                 // A share that is no number asks for nothing, and no share is nothing.
-                shares.parts[sensor] = (parts.round() as u32).clamp(1, MOST);
+                shares.parts[need.sensor] = (parts.round() as u32).clamp(1, MOST);
             }
             for neighbours in &pilot.neighbours {
                 shares.share_out(&neighbours.members);
             }
-            let left = |(&sensor, need): (&usize, &Need)| {
-                need.launched + need.gathered * shares.launched(sensor)
-            };
-            shares.variance = free.iter().zip(&needs).map(left).fold(0.0, f64::max);
+            let left = |need: &Need| need.launched + need.gathered * shares.launched(need.sensor);
+            shares.variance = needs.iter().map(left).fold(0.0, f64::max);
         }
         shares
     }
-}
 
-impl Allocation {
     /// Gives sensors that share walks, and of which each has its own share by now, rounds in which they take as many in
     /// proportion.
     fn share_out(&mut self, members: &[usize]) {
@@ -288,39 +175,12 @@ impl Allocation {
     }
 }
 
-/// What a sensor needs: relative variance of one walk of either kind, and S0.
-struct Need {
-    mean: f64,
-    launched: f64,
-    gathered: f64,
-}
-
-impl Need {
-    fn of(rounds: &[Round], walks: u64, sensor: usize, exact: f64) -> Self {
-        let (local, from_emitters) = moments(rounds.iter().map(|r| r.launched[sensor]));
-        let (looked, from_sensor) = moments(rounds.iter().map(|r| r.gathered[sensor]));
-        Self {
-            mean: exact + local + looked,
-            launched: from_emitters * LAUNCHED as f64 / EVEN,
-            gathered: from_sensor * walks as f64,
-        }
-    }
-}
-
-/// Mean and variance of some values.
-fn moments(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
-    let count = values.clone().count() as f64;
-    let mean = values.clone().sum::<f64>() / count;
-    let squares: f64 = values.map(|v| (v - mean) * (v - mean)).sum();
-    (mean, squares / (count - 1.0))
-}
-
 /// The variance V that a run with one walk from the emitters is to have at every sensor; `None` where there is none.
 ///
 /// With L and W the relative variances of a walk of either kind, a sensor that takes W/(V − L) walks for one from the emitters
-/// comes to V/n after n of these. To any error the cost is in proportion to V c + Σ W/(1 − L/V) c′. Where walks from the
+/// comes to V/n after n of these. To any error the cost is in proportion to V c + Σ W/(1 − L/V) c′, the costs of a walk of either kind. Where walks from the
 /// emitters bring nothing, there are as many from a sensor on average.
-fn cheapest(needs: &[Need], cost_launched: f64, cost_gathered: f64) -> Option<f64> {
+fn cheapest(needs: &[Need], [cost_launched, cost_gathered]: [f64; 2]) -> Option<f64> {
     let greatest = needs.iter().map(|n| n.launched).fold(0.0, f64::max);
     if greatest <= 0.0 {
         let mean = needs.iter().map(|n| n.gathered).sum::<f64>() / needs.len().max(1) as f64;
@@ -344,93 +204,6 @@ fn cheapest(needs: &[Need], cost_launched: f64, cost_gathered: f64) -> Option<f6
     best.map(|(_, variance)| variance)
 }
 
-/// What the pilot works with.
-struct Pilot<'a> {
-    passes: Passes<'a>,
-    channels: Channels,
-    receivers: &'a [Receiver],
-    targets: &'a Targets,
-    share: bool,
-    neighbours: Vec<Neighbours>,
-    aims: &'a [Aims<'a>],
-    /// Walks from each sensor in one round, and how many sensors take any.
-    walks: u64,
-    taking: usize,
-    tried: Allocation,
-}
-
-/// One round of the pilot: what a walk of either kind brings to S0 at each sensor, and what all of them cost.
-struct Round {
-    launched: Vec<f64>,
-    gathered: Vec<f64>,
-    cost_launched: f64,
-    cost_gathered: f64,
-}
-
-impl Pilot<'_> {
-    fn round(&self, stream: Stream) -> Round {
-        let count = self.channels.count;
-        let mut launched = vec![0.0; self.receivers.len() * count];
-        let mut launches = Launches::default();
-        let local = local::<1>(
-            &self.passes,
-            &self.channels,
-            &Sensors {
-                receivers: self.receivers,
-                targets: self.targets,
-                share: self.share,
-                allocation: &self.tried,
-            },
-            stream,
-            0..LAUNCHED,
-            &mut launched,
-            &mut launches,
-        );
-        let mut gathered = vec![0.0; launched.len()];
-        let mut effort = Effort::default();
-        let sums = gathered.chunks_mut(count);
-        let shared = shared_out(&self.neighbours, sums);
-        for (neighbours, mut sums) in self.neighbours.iter().zip(shared) {
-            let first = neighbours.members[0];
-            effort += gather::<1>(
-                &self.passes,
-                &self.channels,
-                Observers {
-                    neighbours,
-                    receivers: self.receivers,
-                    aims: self.aims,
-                    rivalry: self.tried.rivalry(first),
-                    launches: &launches,
-                    partners: &|_| 0..LAUNCHED,
-                },
-                stream,
-                0..self.walks,
-                &mut sums,
-            );
-        }
-        let rays = effort.rays as f64;
-        let begun = (self.walks * self.taking as u64) as f64;
-        let mirrors = &self.passes.main.mirrors;
-        // Every other ray of a walk from a sensor leads to a vertex.
-        let looks =
-            mirrors.odds(true) * begun + mirrors.odds(false) * (0.5 * rays - begun).max(0.0);
-        let joins = |effort: Effort| JOIN * effort.joins as f64;
-        let means = |sums: &[f64], walks: u64| {
-            let first = sums.iter().step_by(count);
-            first.map(|sum| sum / walks as f64).collect()
-        };
-        Round {
-            launched: means(&launched, LAUNCHED),
-            gathered: means(&gathered, self.walks),
-            cost_launched: RAY * local.rays as f64 + joins(local),
-            cost_gathered: RAY * rays
-                + LOOK * looks
-                + joins(effort)
-                + BRIDGE * effort.bridges as f64,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -451,23 +224,19 @@ mod tests {
     #[test]
     fn shares_bring_all_sensors_to_one_error_at_the_least_cost() {
         // One sensor, L = W = 1 and equal costs: V + 1/(1 − 1/V) is least at V = 2, and W/(V − L) = 1.
-        let need = |launched, gathered| Need {
-            mean: 1.0,
-            launched,
-            gathered,
-        };
-        let variance = cheapest(&[need(1.0, 1.0)], 1.0, 1.0).unwrap();
+        let need = Need::relative;
+        let variance = cheapest(&[need(1.0, 1.0)], [1.0, 1.0]).unwrap();
         assert!((variance / 2.0 - 1.0).abs() < 0.13, "{variance}");
         // Walks from a sensor that cost nothing are taken without end.
         let needs = [need(1.0, 1.0), need(0.1, 4.0)];
-        let dear = cheapest(&needs, 1.0, 100.0).unwrap();
-        let cheap = cheapest(&needs, 1.0, 1e-3).unwrap();
+        let dear = cheapest(&needs, [1.0, 100.0]).unwrap();
+        let cheap = cheapest(&needs, [1.0, 1e-3]).unwrap();
         assert!(cheap < 1.06 && dear > 4.0, "{cheap} {dear}");
         // Without walks from the emitters the mean share is one.
         assert_eq!(
-            cheapest(&[need(0.0, 1.0), need(0.0, 2.0)], 1.0, 1.0),
+            cheapest(&[need(0.0, 1.0), need(0.0, 2.0)], [1.0, 1.0]),
             Some(1.5)
         );
-        assert_eq!(cheapest(&[need(0.0, 0.0)], 1.0, 1.0), None);
+        assert_eq!(cheapest(&[need(0.0, 0.0)], [1.0, 1.0]), None);
     }
 }

@@ -11,7 +11,6 @@ mod cells;
 
 pub(crate) use cells::Cells;
 
-use crate::emitters::Start;
 use crate::evaluate::Carrying;
 use crate::journey::{End, journey};
 use crate::medium::Medium;
@@ -20,6 +19,7 @@ use crate::path::{Event, Path, Vertex};
 use crate::random::Stream;
 use crate::reading::Unmet;
 use crate::receiver::Receiver;
+use crate::site::Start;
 use crate::techniques::Techniques;
 use crate::trace::Walk;
 use cells::{Cell, Leg};

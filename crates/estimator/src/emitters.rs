@@ -1,16 +1,17 @@
 //! Where light comes from: one table of everything that emits, sampled by flux.
 
+use crate::cumulated::Cumulated;
 use crate::direction::{cosine_weighted, in_cone, on_disc};
 use crate::lamps::{Chosen, Lamps, Place};
 use crate::mirrors::Viewer;
 use crate::random::{Purpose, Uniforms};
 use crate::reading::Unmet;
+use crate::site::{Shape, Site, Start, emitted_state, state_of};
 use crate::variation::{Origin, Variation};
 use glam::DVec3;
 use malus_geometry::{Facet, Facets, Patches, Surfaces};
 use malus_scene::{Distribution, Material, Scene, Source, SourceKind};
 use std::f64::consts::PI;
-use std::ops::Range;
 
 /// All emitters of a scene: emitting triangles first, then sources without geometry, by cumulated flux.
 pub(crate) struct Emitters<'a> {
@@ -18,10 +19,8 @@ pub(crate) struct Emitters<'a> {
     materials: &'a [Material],
     sources: &'a [Source],
     triangles: Vec<u32>,
-    /// Flux of the first i + 1 entries, triangles and then sources.
-    cumulated: Vec<f64>,
-    /// The first entry that reaches each of as many equal steps of all flux as there are entries: where to look for one.
-    guide: Vec<u32>,
+    /// Flux of the entries, triangles and then sources.
+    table: Cumulated,
     /// Flat patches of triangles that emit unpolarised light and are hidden nowhere.
     patches: Facets,
     /// What of all this lies together: the patches, as many sources as are left room for, and the rest.
@@ -45,121 +44,13 @@ pub(crate) enum Choice {
     All,
 }
 
-/// State of emitted light: (1, q, u, v) about an axis; `None` where unpolarised.
-pub(crate) type State<'a> = Option<(&'a [f64; 4], DVec3)>;
-
-/// A place of emission that a point looks at.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Site<'a> {
-    /// Who emits there.
-    pub origin: Origin,
-    /// Where it is; `None` at infinity.
-    pub from: Option<DVec3>,
-    /// State of the light.
-    pub state: State<'a>,
-    /// One over the probability with which this emitter was chosen, per area where it is a surface.
-    inverse: f64,
-    /// The flat patch of emitters that it belongs to, if it does.
-    pub patch: Option<u32>,
-    shape: Shape<'a>,
-}
-
-/// How a place of emission sends light off.
-#[derive(Debug, Clone, Copy)]
-enum Shape<'a> {
-    /// Point of a surface, with its normal and the share of the table's flux per area, in 1/m².
-    Area { normal: DVec3, density: f64 },
-    /// Point source: intensity in unit/sr, by direction.
-    Point {
-        intensity: f64,
-        distribution: &'a Distribution,
-    },
-    /// Parallel light along a direction: irradiance across it, and the area that walks from it start on, in m².
-    Distant {
-        direction: DVec3,
-        irradiance: f64,
-        area: f64,
-    },
-}
-
-impl Site<'_> {
-    /// Irradiance across the beam that leaves along the unit vector `leaving`, after a way of the given square, divided
-    /// by the probability with which this site was chosen, in unit/m².
-    #[inline]
-    pub(crate) fn irradiance(&self, leaving: DVec3, square: f64) -> f64 {
-        self.inverse
-            * match self.shape {
-                // Radiance M/π; M is in the inverse, whose probability is by flux.
-                Shape::Area { normal, .. } => leaving.dot(normal).max(0.0) / (PI * square),
-                Shape::Point {
-                    intensity,
-                    distribution,
-                } => intensity * distribution.share(leaving) / square,
-                Shape::Distant { irradiance, .. } => irradiance,
-            }
-    }
-
-    /// Density per area across the beam with which a walk that starts at this site arrives there.
-    #[inline]
-    pub(crate) fn launched(&self, leaving: DVec3, square: f64) -> f64 {
-        match self.shape {
-            Shape::Area { normal, .. } => leaving.dot(normal).max(0.0) / (PI * square),
-            Shape::Point { distribution, .. } => launch_density(distribution, leaving) / square,
-            Shape::Distant { area, .. } => 1.0 / area,
-        }
-    }
-
-    /// Density per area with which the site was chosen on its surface; `None` for a source without geometry.
-    pub(crate) fn area_density(&self) -> Option<f64> {
-        match self.shape {
-            Shape::Area { density, .. } => Some(density),
-            Shape::Point { .. } | Shape::Distant { .. } => None,
-        }
-    }
-
-    /// Direction of light from infinity.
-    pub(crate) fn direction(&self) -> DVec3 {
-        match self.shape {
-            Shape::Distant { direction, .. } => direction,
-            Shape::Area { .. } | Shape::Point { .. } => DVec3::ZERO,
-        }
-    }
-}
-
-/// Where a walk from an emitter starts.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Start<'a> {
-    /// On or at the emitter, moved off its surface.
-    pub origin: DVec3,
-    /// Unit vector.
-    pub direction: DVec3,
-    /// Flux that the walk carries, in unit; the mean over walks is the flux of the scene.
-    pub flux: f64,
-    /// Normal of the emitting surface; `None` for a source without geometry.
-    pub normal: Option<DVec3>,
-    /// The same place as one that a point looks at.
-    pub site: Site<'a>,
-}
-
-pub(crate) fn state_of<'a>(state: &'a [f64; 4], axis: DVec3) -> State<'a> {
-    let polarised = state[1..].iter().any(|&component| component.abs() > 0.0);
-    polarised.then_some((state, axis))
-}
-
-/// State of the light that a surface emits.
-pub(crate) fn emitted_state(material: &Material) -> State<'_> {
-    let emission = material.emission.as_ref()?;
-    state_of(&emission.state, emission.axis)
-}
-
 impl<'a> Emitters<'a> {
     /// The table of a scene. A triangle that later surfaces hide whole is left out.
     #[must_use]
     pub(crate) fn new(scene: &'a Scene) -> Self {
         let surfaces = &scene.surfaces;
         let mut triangles = Vec::new();
-        let mut cumulated = Vec::new();
-        let mut total = 0.0;
+        let mut fluxes = Vec::new();
         // Those that a patch may be made of.
         let mut even = vec![false; surfaces.len()];
         for triangle in 0..surfaces.len() as u32 {
@@ -170,56 +61,21 @@ impl<'a> Emitters<'a> {
             let exposed = surfaces.exposed_area(triangle);
             if exposed > 0.0 {
                 let area = surfaces.triangle(triangle).area();
-                total += emission.exitance * area;
                 triangles.push(triangle);
-                cumulated.push(total);
+                fluxes.push(emission.exitance * area);
                 even[triangle as usize] = exposed >= area && emitted_state(material).is_none();
             }
         }
-        for source in &scene.sources {
-            total += source_flux(source, surfaces);
-            cumulated.push(total);
-        }
-        let steps = (0..=cumulated.len()).map(|step| {
-            let below = total * (step as f64 / cumulated.len() as f64);
-            cumulated.partition_point(|&c| c <= below) as u32
-        });
-        let guide = steps.collect();
+        fluxes.extend(scene.sources.iter().map(|it| source_flux(it, surfaces)));
         let patches = Patches::new(surfaces, |t| even[t as usize]);
         let patches = Facets::new(surfaces, &patches, |_| true, 0.0, MOST_PATCHES);
-        let told = scene.sources.iter().take(MOST_SOURCES);
-        let places: Vec<Place> = (patches.list().iter().map(Place::Patch))
-            .chain(told.map(Place::Source))
-            .chain([Place::Rest])
-            .collect();
-        let rest = places.len() - 1;
-        // A patch of which some triangles face the other way shines on both sides.
-        let mut lamp_of_patch: Vec<usize> = (0..patches.list().len()).collect();
-        for &triangle in &triangles {
-            if let Some(patch) = patches.of(triangle)
-                && let facet = &patches.list()[patch as usize]
-                && surfaces.normal(triangle).dot(facet.normal) <= 0.0
-            {
-                lamp_of_patch[patch as usize] = rest;
-            }
-        }
-        let fluxes = cumulated.iter().scan(0.0, |before, &until| {
-            let flux = until - *before;
-            *before = until;
-            Some(flux)
-        });
-        let lamp = |entry: usize| match triangles.get(entry) {
-            Some(&triangle) => (patches.of(triangle)).map_or(rest, |it| lamp_of_patch[it as usize]),
-            None => (patches.list().len() + entry - triangles.len()).min(rest),
-        };
-        let lamps = Lamps::new(&places, fluxes.zip((0..).map(lamp)));
+        let (lamps, lamp_of_patch) = lamps(scene, &triangles, &fluxes, &patches);
         Self {
             surfaces,
             materials: &scene.materials,
             sources: &scene.sources,
             triangles,
-            cumulated,
-            guide,
+            table: Cumulated::new(fluxes.into_iter()),
             patches,
             lamps,
             lamp_of_patch,
@@ -242,13 +98,17 @@ impl<'a> Emitters<'a> {
         &self.triangles
     }
 
+    /// How many entries the part of the table has.
+    fn count(&self, choice: Choice) -> usize {
+        match choice {
+            Choice::Areas => self.triangles.len(),
+            Choice::All => self.table.len(),
+        }
+    }
+
     /// Flux of the part of the table, in unit, hidden parts of emitting triangles included.
     pub(crate) fn flux(&self, choice: Choice) -> f64 {
-        let entries = match choice {
-            Choice::Areas => self.triangles.len(),
-            Choice::All => self.cumulated.len(),
-        };
-        entries.checked_sub(1).map_or(0.0, |i| self.cumulated[i])
+        self.table.total(self.count(choice))
     }
 
     /// Flux that leaves the emitters in a variant, in unit: of what nothing hides; of parallel light, what passes through
@@ -285,34 +145,9 @@ impl<'a> Emitters<'a> {
         1.0 - self.flux(Choice::Areas) / self.flux(Choice::All)
     }
 
-    /// The entry of the table that a uniform number chooses by flux, and where within that entry it lies: again a uniform
-    /// number, so that points next to each other choose places next to each other.
+    /// The entry of the table that a uniform number chooses by flux, and where within that entry it lies.
     fn entry(&self, choice: Choice, u: f64) -> (usize, f64) {
-        let count = match choice {
-            Choice::Areas => self.triangles.len(),
-            Choice::All => self.cumulated.len(),
-        };
-        let target = u * self.flux(choice);
-        let below = |entry: usize| match entry {
-            0 => 0.0,
-            _ => self.cumulated[entry - 1],
-        };
-        let all = self.cumulated.len();
-        let step = (target / self.flux(Choice::All) * all as f64) as usize;
-        let [start, end] = [0, 1].map(|next| self.guide[(step + next).min(all)] as usize);
-        let search = |range: Range<usize>| {
-            let found = self.cumulated[range.clone()].partition_point(|&c| c <= target);
-            range.start + found
-        };
-        let mut entry = search(start..end);
-        // Rounding may have chosen the step beside.
-        if below(entry) > target || self.cumulated.get(entry).is_some_and(|&c| c <= target) {
-            entry = search(0..all);
-        }
-        let entry = entry.min(count - 1);
-        let below = below(entry);
-        let within = (target - below) / (self.cumulated[entry] - below);
-        (entry, within.clamp(0.0, 1.0 - f64::EPSILON))
+        self.table.choose(self.count(choice), u)
     }
 
     fn emission(&self, triangle: u32) -> (f64, &'a Material) {
@@ -499,20 +334,6 @@ impl<'a> Emitters<'a> {
     }
 }
 
-/// Density per solid angle with which a walk leaves a point source along a direction (see [`Emitters::start`]).
-fn launch_density(distribution: &Distribution, leaving: DVec3) -> f64 {
-    match *distribution {
-        Distribution::Isotropic => 0.25 / PI,
-        Distribution::Cosine { direction } => direction.dot(leaving).max(0.0) / PI,
-        Distribution::Spot {
-            direction,
-            cos_outer,
-            ..
-        } if direction.dot(leaving) > cos_outer => 0.5 / (PI * (1.0 - cos_outer)),
-        Distribution::Spot { .. } => 0.0,
-    }
-}
-
 /// Flux of a source in unit; of parallel light, what passes through the great circle of the scene.
 fn source_flux(source: &Source, surfaces: &Surfaces) -> f64 {
     match &source.kind {
@@ -525,4 +346,35 @@ fn source_flux(source: &Source, surfaces: &Surfaces) -> f64 {
             irradiance * PI * surfaces.radius() * surfaces.radius()
         }
     }
+}
+
+/// The patches, as many sources as are told from each other, and the rest as lamps, with the lamp of each patch.
+fn lamps(
+    scene: &Scene,
+    triangles: &[u32],
+    fluxes: &[f64],
+    patches: &Facets,
+) -> (Lamps, Vec<usize>) {
+    let told = scene.sources.iter().take(MOST_SOURCES).map(Place::Source);
+    let places = patches.list().iter().map(Place::Patch).chain(told);
+    let places: Vec<Place> = places.chain([Place::Rest]).collect();
+    let rest = places.len() - 1;
+    let mut of_patch: Vec<usize> = (0..patches.list().len()).collect();
+    for &triangle in triangles {
+        // A patch of which some triangles face the other way shines on both sides.
+        if let Some(patch) = patches.of(triangle)
+            && let facet = &patches.list()[patch as usize]
+            && scene.surfaces.normal(triangle).dot(facet.normal) <= 0.0
+        {
+            of_patch[patch as usize] = rest;
+        }
+    }
+    let lamp = |entry: usize| match triangles.get(entry) {
+        Some(&triangle) => patches
+            .of(triangle)
+            .map_or(rest, |it| of_patch[it as usize]),
+        None => (patches.list().len() + entry - triangles.len()).min(rest),
+    };
+    let entries = fluxes.iter().copied().zip((0..).map(lamp));
+    (Lamps::new(&places, entries), of_patch)
 }

@@ -14,10 +14,10 @@ pub(crate) use strands::Strands;
 
 use chain::Chain;
 
-use crate::emitters::State;
 use crate::medium::Step;
 use crate::path::{Bridge, Event, Vertex};
 use crate::receiver::Receiver;
+use crate::site::State;
 use crate::variation::Variation;
 use glam::DVec3;
 use malus_optics::{

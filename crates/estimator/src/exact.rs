@@ -1,13 +1,13 @@
 //! The part of the answer that needs no chance: light of sources without geometry, straight and by their images in flat
 //! mirrors, and light straight from the emitting surfaces that a sensor sees whole.
 
-use crate::emitters::Site;
 use crate::evaluate::seen;
 use crate::medium::{Medium, Step};
 use crate::mirrors::Viewer;
 use crate::pass::{Channels, Passes};
 use crate::receiver::Receiver;
 use crate::sight::Sight;
+use crate::site::Site;
 use crate::variation::Variation;
 use glam::DVec3;
 use rayon::prelude::*;

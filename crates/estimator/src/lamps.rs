@@ -3,6 +3,7 @@
 //! Of the lamps of a large room a point sees two or three well. Were they chosen by flux alone, the variance of what one look
 //! brings would grow as their number.
 
+use crate::cumulated::Cumulated;
 use crate::mirrors::Viewer;
 use glam::DVec3;
 use malus_geometry::Facet;
@@ -40,8 +41,9 @@ pub(crate) struct Lamps {
 struct Lamp {
     /// Its share of all flux.
     share: f64,
-    /// Its entries of the table, and the flux of the first i + 1 of them as a share of the lamp's.
-    entries: Vec<(u32, f64)>,
+    /// Its entries of the table, and their flux.
+    entries: Vec<u32>,
+    fluxes: Cumulated,
     reach: Reach,
 }
 
@@ -73,30 +75,30 @@ pub(crate) struct Chosen {
 impl Lamps {
     /// Parts a table into lamps at these places; `entries` are the flux of each entry and the number of its lamp.
     pub(crate) fn new(places: &[Place], entries: impl Iterator<Item = (f64, usize)>) -> Self {
-        let mut lamps: Vec<Lamp> = places.iter().map(|_| Lamp::empty()).collect();
+        let mut parts = vec![(Vec::new(), Vec::new()); places.len()];
         for (entry, (flux, lamp)) in (0..).zip(entries) {
-            let lamp = &mut lamps[lamp];
-            lamp.share += flux;
-            lamp.entries.push((entry, lamp.share));
+            parts[lamp].0.push(entry);
+            parts[lamp].1.push(flux);
         }
-        let total: f64 = lamps.iter().map(|lamp| lamp.share).sum();
-        let mut rest = 0.0;
-        for (lamp, place) in lamps.iter_mut().zip(places) {
-            let flux = lamp.share;
-            for (_, until) in &mut lamp.entries {
-                *until /= flux;
+        let flux = |part: &(Vec<u32>, Vec<f64>)| part.1.iter().sum::<f64>();
+        let total: f64 = parts.iter().map(flux).sum();
+        let lamps = parts.into_iter().zip(places).map(|(part, place)| {
+            let flux = flux(&part);
+            Lamp {
+                share: flux / total,
+                entries: part.0,
+                fluxes: Cumulated::new(part.1.into_iter()),
+                reach: Reach::of(place, flux),
             }
-            lamp.share = flux / total;
-            lamp.reach = Reach::of(place, flux);
-            if let Place::Rest = place {
-                rest += lamp.share;
-            }
-        }
+        });
+        let lamps: Vec<Lamp> = lamps.collect();
+        let unknown = |lamp: &&Lamp| matches!(lamp.reach, Reach::Unknown);
+        let rest = lamps.iter().filter(unknown).map(|lamp| lamp.share).sum();
         let shining = lamps.iter().filter(|lamp| lamp.share > 0.0).count();
         Self {
-            lamps,
             several: shining > 1 && rest < 1.0,
             rest,
+            lamps,
         }
     }
 
@@ -124,9 +126,9 @@ impl Lamps {
             }
         }
         let (lamp, within, preference) = chosen;
-        let (entry, within) = lamp.entry(within);
+        let (entry, within) = lamp.fluxes.choose(lamp.entries.len(), within);
         Chosen {
-            entry,
+            entry: lamp.entries[entry] as usize,
             within,
             preference,
         }
@@ -156,29 +158,6 @@ impl Lamps {
             if promise.is_finite() { promise } else { 0.0 }
         };
         self.lamps.iter().map(promise).collect()
-    }
-}
-
-impl Lamp {
-    fn empty() -> Self {
-        Self {
-            share: 0.0,
-            entries: Vec::new(),
-            reach: Reach::Unknown,
-        }
-    }
-
-    /// The entry that a uniform number chooses by flux, and where within it.
-    fn entry(&self, u: f64) -> (usize, f64) {
-        let last = self.entries.len().saturating_sub(1);
-        let place = self.entries.partition_point(|it| it.1 <= u).min(last);
-        let below = match place {
-            0 => 0.0,
-            _ => self.entries[place - 1].1,
-        };
-        let (entry, until) = self.entries[place];
-        let within = (u - below) / (until - below);
-        (entry as usize, within.clamp(0.0, 1.0 - f64::EPSILON))
     }
 }
 

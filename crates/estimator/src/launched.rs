@@ -1,9 +1,9 @@
 //! What a walk from an emitter knows of the other ways in which its light might have reached a sensor.
 
-use crate::emitters::{Site, Start};
 use crate::lookout::Passed;
 use crate::medium::Medium;
 use crate::mirrors::{Chain, Viewer};
+use crate::site::{Site, Start};
 use crate::techniques::Techniques;
 use glam::DVec3;
 

@@ -4,7 +4,6 @@
 //! surface keeps is booked as its expectation, before it is decided how the walk goes on: the books then close on
 //! average only, and how well they do is the check.
 
-use crate::emitters::Start;
 use crate::engine::Engine;
 use crate::evaluate::Carrying;
 use crate::journey::{End, journey};
@@ -14,6 +13,7 @@ use crate::pass::Passes;
 use crate::path::Path;
 use crate::random::Stream;
 use crate::results::{Absorbed, Energy, Unseen};
+use crate::site::Start;
 use crate::statistics::{Estimate, Means, MergeError, Replica, Tally};
 use crate::student::half_width_95;
 use crate::techniques::Techniques;

@@ -4,12 +4,12 @@ mod joining;
 
 use crate::allocation::Allocation;
 use crate::bridge::Launches;
-use crate::emitters::Start;
 use crate::evaluate::{Carrying, sent};
 use crate::pass::{Channels, Effort, Passes};
 use crate::path::Path;
 use crate::random::Stream;
 use crate::receiver::Receiver;
+use crate::site::Start;
 use crate::variation::Variation;
 use joining::{Joining, seen, straight};
 use malus_geometry::{Surfaces, Targets};

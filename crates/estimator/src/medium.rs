@@ -1,10 +1,11 @@
 //! What light moves through: surfaces, what they do, and where light comes from.
 
 use crate::cover::{Cover, Odds};
-use crate::emitters::{Emitters, Site};
+use crate::emitters::Emitters;
 use crate::glints::Glints;
 use crate::mirrors::{ASIDE, Chain, Drawn, Mirrors, Target, Viewer};
 use crate::random::Fresh;
+use crate::site::Site;
 use crate::spread::Spread;
 use crate::variation::Variation;
 use glam::DVec3;

@@ -1,7 +1,7 @@
 //! Light that an estimator cannot see, as walks from the emitters tell it: what `choose::blind_spots` says in words.
 
-use crate::emitters::Start;
 use crate::path::{Event, Vertex};
+use crate::site::Start;
 use malus_scene::Estimator;
 
 /// How light has come to where it is, as far as that decides whether an estimator can see it there.

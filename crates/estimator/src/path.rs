@@ -1,9 +1,9 @@
 //! What a walk has met, as light is sent along it.
 
 use crate::bridge::{Candidates, Landing};
-use crate::emitters::State;
 use crate::launched::Rival;
 use crate::medium::Step;
+use crate::site::State;
 use crate::variation::Origin;
 use glam::DVec3;
 use malus_optics::Reflection;

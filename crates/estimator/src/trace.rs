@@ -9,7 +9,7 @@ mod look;
 
 use crate::bridge::Partners;
 use crate::direction::cosine_weighted;
-use crate::emitters::{Choice, Start};
+use crate::emitters::Choice;
 use crate::glints::Aim;
 use crate::launched::{Launched, Rival};
 use crate::lookout::Lookout;
@@ -20,6 +20,7 @@ use crate::path::{Event, Path, Vertex};
 use crate::random::{Purpose, Uniforms};
 use crate::receiver::Receiver;
 use crate::sight::Seen;
+use crate::site::Start;
 use crate::techniques::Techniques;
 use glam::DVec3;
 use look::Look;

@@ -1,9 +1,9 @@
 //! Light along a walk from an emitter.
 
 use super::{Light, emitted, passed, passed_at, scattered, taken_in};
-use crate::emitters::Start;
 use crate::path::{Event, Vertex};
 use crate::receiver::Receiver;
+use crate::site::Start;
 use crate::variation::Variation;
 use glam::DVec3;
 use malus_optics::{Basis, Incidence, Rotator, Sensor, Stokes, angle_of_incidence};

@@ -70,7 +70,7 @@ impl<'r, const N: usize> Gathering<'r, N> {
                 && let Some(emission) = &material.emission
             {
                 let direction = -vertex.arriving;
-                let light = emitted(direction, crate::emitters::emitted_state(material));
+                let light = emitted(direction, crate::site::emitted_state(material));
                 let read = self.chain.pass(self.receiver, direction, light)
                     * (emission.exitance * vertex.emission * self.receiver.per_exitance);
                 let reading = self.reading();

@@ -6,10 +6,10 @@
 
 use super::chain::Chain;
 use super::{Reading, Readings, bridged, emitted, passed_at};
-use crate::emitters::state_of;
 use crate::gather::Part;
 use crate::path::{Bridge, Connection, Event, Path, Vertex};
 use crate::receiver::Receiver;
+use crate::site::state_of;
 use crate::spread::{Spread, Surface};
 
 /// What a sensor reads of a walk in every variant.

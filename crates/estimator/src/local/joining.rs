@@ -2,7 +2,6 @@
 
 use super::Sensors;
 use crate::bridge::Landings;
-use crate::emitters::Start;
 use crate::evaluate::joined;
 use crate::medium::{Medium, Step};
 use crate::mirrors::{Target, Viewer};
@@ -10,6 +9,7 @@ use crate::pass::Effort;
 use crate::path::{Path, Vertex};
 use crate::random::Uniforms;
 use crate::receiver::{Receiver, coupling};
+use crate::site::Start;
 use crate::techniques::Techniques;
 use crate::trace::Walk;
 use crate::variation::Variation;
@@ -169,20 +169,27 @@ impl Joining<'_> {
             } = *vertex;
             straight(medium, position, normal, &receivers[sensor], clear, steps)
         };
-        // The density with which walks from all neighbours of a sensor come here, for each that shares them.
+        // Where neighbours share, no pane is on the way, and the density with which walks from all neighbours of a sensor come
+        // here is to be known for each.
         let memberships = &allocation.memberships;
         let share = self.sensors.share && self.techniques.gather && !polarises;
+        let mut known: Vec<Option<Joined>> = Vec::new();
         let mut reached = vec![0.0; if share { receivers.len() } else { 0 }];
         if share {
-            for sensor in 0..receivers.len() {
-                if let Some(way) = ways(sensor, &mut steps) {
+            known.extend((0..receivers.len()).map(|sensor| ways(sensor, &mut steps)));
+            for (sensor, way) in known.iter().enumerate() {
+                if let Some(way) = way {
                     let times = f64::from(allocation.times()[sensor]);
                     reached[memberships[sensor]] += times * way.coupling * way.odds;
                 }
             }
         }
         for (sensor, receiver) in receivers.iter().enumerate() {
-            if let Some(way) = ways(sensor, &mut steps) {
+            let way = match known.get_mut(sensor) {
+                Some(way) => way.take(),
+                None => ways(sensor, &mut steps),
+            };
+            if let Some(way) = way {
                 let mut weight = way.coupling;
                 if self.techniques.gather {
                     let coupling = if share {

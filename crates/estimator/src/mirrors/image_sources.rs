@@ -32,7 +32,7 @@ pub(super) struct ImageSources {
 /// Light of a source that some mirrors have sent on.
 enum Mirrored {
     /// From a point: what the mirrors leave of its beam.
-    Beam(View),
+    Beam(Box<View>),
     /// Parallel, along a direction, from the last of the mirrors.
     Parallel(DVec3, u32),
 }
@@ -100,7 +100,7 @@ impl Mirrors {
                     sensor: false,
                 };
                 let view = View::new(&toward_plane).in_mirror(self, facet)?;
-                Some(Mirrored::Beam(view))
+                Some(Mirrored::Beam(Box::new(view)))
             }
             (None, &SourceKind::Distant { direction, .. }) => {
                 Some(Mirrored::Parallel(plane.mirrored(direction), facet))
@@ -108,7 +108,7 @@ impl Mirrors {
             (Some(Mirrored::Beam(view)), _) => {
                 let again = view.facets.last() == Some(&facet);
                 let view = (!again).then(|| view.in_mirror(self, facet))??;
-                Some(Mirrored::Beam(view))
+                Some(Mirrored::Beam(Box::new(view)))
             }
             (Some(&Mirrored::Parallel(direction, last)), _) => {
                 let from = self.facet(last);
