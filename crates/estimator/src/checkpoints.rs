@@ -29,15 +29,15 @@ impl Checkpoints {
         Self { first }
     }
 
-    /// The first checkpoint after `taken` walks a replica: of the first of all, one to the octave, and four as soon as they
-    /// tell enough.
+    /// The first checkpoint after `taken` walks a replica: of the first of all, one to the octave, and two as soon as they
+    /// tell enough. At every look luck may stop a run too early, so there are few.
     pub(crate) fn after(self, taken: u64) -> u64 {
         let mut next = self.first;
         while next <= taken {
             next = if next < Self::TELLING {
                 2 * next
             } else {
-                let spacing = 1 << (next.ilog2() - 2);
+                let spacing = 1 << (next.ilog2() - 1);
                 (next / spacing + 1) * spacing
             };
         }
@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn checkpoints_stand_four_to_the_octave_and_one_before_where_little_is_asked() {
+    fn checkpoints_stand_two_to_the_octave_and_one_before_where_little_is_asked() {
         let first = |goal, expected: f64, count: usize| -> Vec<u64> {
             let checkpoints = Checkpoints::new(goal, |walks| expected / (walks as f64).sqrt());
             let mut taken = 0;
@@ -71,7 +71,7 @@ mod tests {
             };
             (0..count).map(|_| next()).collect()
         };
-        let all = [16, 20, 24, 28, 32, 40, 48, 56, 64, 80];
+        let all = [16, 24, 32, 48, 64, 96, 128, 192, 256, 384];
         assert_eq!(first(None, 1.0, 10), all);
         assert_eq!(first(Some(0.3), 1.0, 10), all);
         // Where less is expected to do, a run is judged earlier, too.
