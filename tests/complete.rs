@@ -1,6 +1,7 @@
 //! Every technique weighed against every other: `auto` against plain `gather`, reciprocity and thermal equilibrium.
 
 mod alike;
+mod lamps;
 mod sources;
 
 use crate::experiment::{assert_estimate, evaluate, measured, readings, s0, scene};

@@ -18,8 +18,9 @@ AIM = 0.95
 PATIENCE, SHORTEST = 2.0, 1.0
 # The most that one step of the knob may change.
 LEAP = 16.0
-# An error that more work leaves above this share of what it was does not come from chance: the setting is given up.
-FLOOR = 0.9
+# An error that so many times the work or more leaves above this share of what it was does not come from chance: the setting
+# is given up.
+TELLING, FLOOR = 2.0, 0.9
 
 
 @dataclass(frozen=True)
@@ -90,12 +91,12 @@ def _refined(entrant, trial, reference, target, seeds, limit):
         effort = _moved(entrant, trial.setting.effort, trial.outcome.rms, target)
         if math.isclose(effort, trial.setting.effort, rel_tol=0.01):
             break
-        more, before = effort > trial.setting.effort, trial.outcome.rms
+        telling, before = effort >= TELLING * trial.setting.effort, trial.outcome.rms
         trial = _try(entrant, trial.setting.at(effort), reference, seeds, limit)
         if trial is None:
             break
         trials.append(trial)
-        if more and trial.outcome.rms > max(target, FLOOR * before):
+        if telling and trial.outcome.rms > max(target, FLOOR * before):
             break
     return trials
 
