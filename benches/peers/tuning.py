@@ -18,8 +18,8 @@ AIM = 0.95
 PATIENCE, SHORTEST = 2.0, 1.0
 # The most that one step of the knob may change.
 LEAP = 16.0
-# An error that so many times the work or more leaves above this share of what it was does not come from chance: the setting
-# is given up.
+# An error that so many times the solve time or more leaves above this share of what it was does not come from chance: the
+# setting is given up. (malus may do no more work where a little less error is asked for.)
 TELLING, FLOOR = 2.0, 0.9
 
 
@@ -91,12 +91,13 @@ def _refined(entrant, trial, reference, target, seeds, limit):
         effort = _moved(entrant, trial.setting.effort, trial.outcome.rms, target)
         if math.isclose(effort, trial.setting.effort, rel_tol=0.01):
             break
-        telling, before = effort >= TELLING * trial.setting.effort, trial.outcome.rms
+        before = trial.outcome
         trial = _try(entrant, trial.setting.at(effort), reference, seeds, limit)
         if trial is None:
             break
         trials.append(trial)
-        if telling and trial.outcome.rms > max(target, FLOOR * before):
+        telling = trial.outcome.seconds >= TELLING * before.seconds
+        if telling and trial.outcome.rms > max(target, FLOOR * before.rms):
             break
     return trials
 
