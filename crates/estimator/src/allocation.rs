@@ -178,8 +178,8 @@ impl Allocation {
 /// The variance V that a run with one walk from the emitters is to have at every sensor; `None` where there is none.
 ///
 /// With L and W the relative variances of a walk of either kind, a sensor that takes W/(V − L) walks for one from the emitters
-/// comes to V/n after n of these. To any error the cost is in proportion to V c + Σ W/(1 − L/V) c′, the costs of a walk of either kind. Where walks from the
-/// emitters bring nothing, there are as many from a sensor on average.
+/// comes to V/n after n of these. To any error the cost is in proportion to V c + Σ W/(1 − L/V) c′, with c and c′ what a walk
+/// of either kind costs. Where walks from the emitters bring nothing, there are as many from a sensor on average.
 fn cheapest(needs: &[Need], [cost_launched, cost_gathered]: [f64; 2]) -> Option<f64> {
     let greatest = needs.iter().map(|n| n.launched).fold(0.0, f64::max);
     if greatest <= 0.0 {
