@@ -18,7 +18,7 @@ use std::io::{Read, Write};
 use std::path::Path;
 
 /// First line of a file; the number rises whenever what follows it is laid out anew.
-const FORM: &str = "malus state 9\n";
+const FORM: &str = "malus state 10\n";
 
 /// What is said of a file that is not as it was written.
 const DAMAGED: &str =
@@ -324,10 +324,9 @@ fn parsed(bytes: &[u8]) -> Result<Part> {
         let Some(form) = form else {
             bail!("is no state of a run, as malus run and malus sweep write it");
         };
-        let form = form.split(|&byte| byte == b'\n').next().unwrap_or_default();
-        let form = str::from_utf8(form)
-            .ok()
-            .and_then(|form| form.parse::<u32>().ok());
+        // Without the end of the line the number may have been cut off.
+        let end = form.iter().position(|&byte| byte == b'\n');
+        let form = end.and_then(|end| str::from_utf8(&form[..end]).ok()?.parse::<u32>().ok());
         let ours = FORM.trim_start_matches(ANY_FORM).trim_end();
         match form {
             Some(form) if form.to_string() != ours => {

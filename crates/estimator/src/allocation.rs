@@ -8,6 +8,7 @@
 use crate::pass::Passes;
 use crate::pilot::{Findings, Need, Pilot, Stations};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::SQRT_2;
 
 /// A sensor's share of walks is a multiple of one over this.
 const PARTS: u32 = 64;
@@ -17,6 +18,9 @@ const MOST: u32 = 8 * PARTS;
 
 /// Most walks that a sensor takes in a round, of which one of its neighbours takes one.
 const TIMES: u32 = 4;
+
+// Points of a sequence are spread best where their number is a power of two. So are all shares.
+const _: () = assert!(PARTS.is_power_of_two() && MOST.is_power_of_two() && TIMES.is_power_of_two());
 
 /// Share with which the pilot weighs the two kinds of walk against each other, in parts.
 const TRIED: u32 = PARTS / 8;
@@ -161,18 +165,27 @@ impl Allocation {
     }
 
     /// Gives sensors that share walks, and of which each has its own share by now, rounds in which they take as many in
-    /// proportion.
+    /// proportion: all by powers of two.
     fn share_out(&mut self, members: &[usize]) {
         let parts = |&sensor: &usize| self.parts[sensor];
         let least = members.iter().map(parts).min().unwrap_or(PARTS);
         let most = members.iter().map(parts).max().unwrap_or(PARTS);
-        let parts = least.max(most.div_ceil(TIMES));
+        let parts = power_of_two(f64::from(least.max(most.div_ceil(TIMES))));
         for &sensor in members {
             let times = f64::from(self.parts[sensor]) / f64::from(parts);
-            self.times[sensor] = (times.round() as u32).max(1);
+            self.times[sensor] = power_of_two(times).min(TIMES);
             self.parts[sensor] = parts;
         }
     }
+}
+
+/// The power of two nearest to a number by ratio; 1 of all that is less.
+fn power_of_two(number: f64) -> u32 {
+    let mut power = 1;
+    while power < MOST && f64::from(power) * SQRT_2 < number {
+        power *= 2;
+    }
+    power
 }
 
 /// The variance V that a run with one walk from the emitters is to have at every sensor; `None` where there is none.
@@ -219,6 +232,21 @@ mod tests {
         assert_eq!(walks(1), [1, 1, 1, 8]);
         assert_eq!(walks(128), [2, 32, 128, 1024]);
         assert_eq!(shares.walks(3, u64::MAX), u64::MAX);
+    }
+
+    #[test]
+    fn neighbours_take_walks_by_powers_of_two() {
+        let mut shares = Allocation {
+            parts: vec![150, 66, 49, 300, 7],
+            ..Allocation::even(vec![0, 0, 0, 0, 1])
+        };
+        shares.share_out(&[0, 1, 2, 3]);
+        shares.share_out(&[4]);
+        // A quarter of the greatest is more than the least; the nearest power of two to 75 is 64.
+        assert_eq!(shares.parts, [64, 64, 64, 64, 8]);
+        assert_eq!(shares.times, [2, 1, 1, 4, 1]);
+        let nearest = [0.3, 1.4, 1.5, 2.8, 2.9, 45.0, 46.0, 1e9].map(power_of_two);
+        assert_eq!(nearest, [1, 1, 2, 2, 4, 32, 64, MOST]);
     }
 
     #[test]

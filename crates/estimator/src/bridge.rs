@@ -21,7 +21,9 @@ const WALKS: u64 = 4;
 /// theirs.
 const UNSEEN: f64 = 0.3;
 
-/// How much of what such walks bring is chance that the walks from one sensor share, as they are joined to the same ones.
+/// How much of what such walks bring is chance that the walks from one sensor share, as they are joined to the same ones: to
+/// all points of these in a cell, to one point elsewhere.
+const SHARED_IN_CELLS: f64 = 0.03;
 const SHARED: f64 = 0.2;
 
 /// The least number of walks from the emitters in a block.
@@ -56,8 +58,11 @@ pub(crate) fn worth(block: u64, launched: f64, cells: bool) -> f64 {
     if block == 0 {
         return 0.0;
     }
-    let seen = if cells { 1.0 } else { UNSEEN };
-    seen / (1.0 / block as f64 + SHARED / launched)
+    let (seen, shared) = match cells {
+        true => (1.0, SHARED_IN_CELLS),
+        false => (UNSEEN, SHARED),
+    };
+    seen / (1.0 / block as f64 + shared / launched)
 }
 
 /// The walks from the emitters, `partner` among them, that one from a sensor is joined to: so many, but fewer of the first, so

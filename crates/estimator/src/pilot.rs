@@ -13,11 +13,16 @@ use crate::statistics::REPLICAS;
 use malus_geometry::Targets;
 use rayon::prelude::*;
 
-/// Rounds of the pilot, and in one round the walks from the emitters and those from all sensors, of which each has one at
-/// least.
-const ROUNDS: u32 = 12;
-const LAUNCHED: u64 = 4;
+/// Rounds of the pilot: so few where these tell enough, and at most so many.
+const FEWEST_ROUNDS: u32 = 12;
+const MOST_ROUNDS: u32 = 18;
+
+/// Walks of the pilot from the emitters, at least.
+const LAUNCHED: u64 = 48;
+
+/// Walks from all sensors in one round, of which each has one at least, and in all rounds that tell enough.
 const GATHERED: u64 = 16;
+const ENOUGH: u64 = 160;
 
 /// By how much less walks from the emitters err in a run, whose points are many and spread evenly. Far from walls their
 /// light is smooth; it is not where walks from the sensors are needed.
@@ -58,7 +63,10 @@ pub(crate) struct Pilot<'a> {
     /// Those that share walks, of which each takes one a round.
     pub neighbours: Vec<Neighbours>,
     aims: &'a [Aims<'a>],
-    /// Walks from each sensor in one round, and how many sensors take any.
+    /// How many rounds it takes.
+    rounds: u32,
+    /// Walks from the emitters and from each sensor in one round, and how many sensors take any.
+    launched: u64,
     walks: u64,
     taking: usize,
     tried: &'a Allocation,
@@ -90,8 +98,14 @@ impl<'a> Pilot<'a> {
             share,
         } = stations;
         let free = receivers.iter().filter(|it| takes_part(it)).count();
+        let free = free.max(1) as u64;
+        let walks = (GATHERED / free).max(1);
+        let (fewest, most) = (u64::from(FEWEST_ROUNDS), u64::from(MOST_ROUNDS));
+        let rounds = ENOUGH.div_ceil(walks * free).clamp(fewest, most);
         Self {
-            walks: (GATHERED / free.max(1) as u64).max(1),
+            rounds: rounds as u32,
+            launched: LAUNCHED.div_ceil(rounds),
+            walks,
             taking: receivers.iter().filter(|it| !it.enclosed).count(),
             passes: Passes {
                 main: Medium {
@@ -119,14 +133,14 @@ impl<'a> Pilot<'a> {
 
     /// Takes its walks, for sensors of which the irradiance `exact` is known without.
     pub(crate) fn find(&self, exact: impl Fn(usize) -> f64, seed: u64) -> Findings {
-        let rounds: Vec<Round> = (0..ROUNDS)
+        let rounds: Vec<Round> = (0..self.rounds)
             .into_par_iter()
             // Beyond the streams of the run and of its pictures, so that no walk of the run is known beforehand.
             .map(|round| self.round(Stream::new(seed, 2 * REPLICAS + round)))
             .collect();
         let free = (0..self.receivers.len()).filter(|&sensor| takes_part(&self.receivers[sensor]));
         let mut needs: Vec<Need> = free
-            .map(|sensor| Need::of(&rounds, self.walks, sensor, exact(sensor)))
+            .map(|sensor| Need::of(&rounds, [self.launched, self.walks], sensor, exact(sensor)))
             .collect();
         let count = needs.len().max(1) as f64;
         let mean = needs.iter().map(|n| n.mean).sum::<f64>() / count;
@@ -137,7 +151,7 @@ impl<'a> Pilot<'a> {
         }
         // So few walks seldom meet what is rare and bright, and then at few sensors: what one has met warns the others.
         let gathered = needs.iter().map(|n| n.gathered).sum::<f64>() / count;
-        let own = f64::from(ROUNDS) * self.walks as f64;
+        let own = f64::from(self.rounds) * self.walks as f64;
         let telling = match needs.iter().all(|n| n.launched <= 0.0) {
             true => TELLING_BETWEEN_MIRRORS,
             false => TELLING,
@@ -145,7 +159,7 @@ impl<'a> Pilot<'a> {
         for need in &mut needs {
             need.gathered = (own * need.gathered + telling * gathered) / (own + telling);
         }
-        let launched = f64::from(ROUNDS) * LAUNCHED as f64;
+        let launched = f64::from(self.rounds) * self.launched as f64;
         let gathered = own * needs.len() as f64;
         let costs = [
             rounds.iter().map(|r| r.cost_launched).sum::<f64>() / launched,
@@ -168,7 +182,7 @@ impl<'a> Pilot<'a> {
                 allocation: self.tried,
             },
             stream,
-            0..LAUNCHED,
+            0..self.launched,
             &mut launched,
             &mut launches,
         );
@@ -187,7 +201,7 @@ impl<'a> Pilot<'a> {
                     aims: self.aims,
                     rivalry: self.tried.rivalry(first),
                     launches: &launches,
-                    partners: &|_| 0..LAUNCHED,
+                    partners: &|_| 0..self.launched,
                 },
                 stream,
                 0..self.walks,
@@ -206,7 +220,7 @@ impl<'a> Pilot<'a> {
             first.map(|sum| sum / walks as f64).collect()
         };
         Round {
-            launched: means(&launched, LAUNCHED),
+            launched: means(&launched, self.launched),
             gathered: means(&gathered, self.walks),
             cost_launched: RAY * local.rays as f64 + joins(local),
             cost_gathered: RAY * rays
@@ -243,13 +257,14 @@ impl Need {
         }
     }
 
-    fn of(rounds: &[Round], walks: u64, sensor: usize, exact: f64) -> Self {
+    /// What one sensor needs, by so many walks from the emitters and from the sensor in each round.
+    fn of(rounds: &[Round], [launched, walks]: [u64; 2], sensor: usize, exact: f64) -> Self {
         let (local, from_emitters) = moments(rounds.iter().map(|r| r.launched[sensor]));
         let (looked, from_sensor) = moments(rounds.iter().map(|r| r.gathered[sensor]));
         Self {
             sensor,
             mean: exact + local + looked,
-            launched: from_emitters * LAUNCHED as f64 / EVEN,
+            launched: from_emitters * launched as f64 / EVEN,
             gathered: from_sensor * walks as f64,
         }
     }
