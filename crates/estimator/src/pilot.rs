@@ -14,7 +14,7 @@ use malus_geometry::Targets;
 use rayon::prelude::*;
 
 /// Rounds of the pilot: so few where these tell enough, and at most so many.
-const FEWEST_ROUNDS: u32 = 12;
+const FEWEST_ROUNDS: u32 = 8;
 const MOST_ROUNDS: u32 = 18;
 
 /// Walks of the pilot from the emitters, at least.
