@@ -4,7 +4,7 @@
     benches/peers/embree.py FILE [--malus PATH] [--rounds N] [--seconds T]
 
 FILE is a scene or a mesh, as `malus bench-bvh` takes it. The script makes a virtual environment of its own with
-embreex (Embree 4, single rays) from PyPI in target/peers/embree. Both programs trace pieces of 2048 rays on one thread;
+embreex (Embree 4, single rays) from PyPI in target/peers/embree. PATH is that of the variable MALUS unless it is given. Both programs trace pieces of 2048 rays on one thread;
 a round takes one after the other, and a rate is that of the median, or of the fastest, of all repetitions of each piece.
 
 Embree is called through a loop in compiled Python that allocates no memory a ray, in single precision, at the quality
@@ -137,7 +137,7 @@ def race(file, malus, rounds, seconds):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("file", nargs="?", help="a scene or a mesh")
-    parser.add_argument("--malus", default=str(ROOT / "target" / "release" / "malus"))
+    parser.add_argument("--malus", default=os.environ.get("MALUS", ROOT / "target" / "release" / "malus"))
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--seconds", type=float, default=4.0, help="of each program in each round")
     parser.add_argument("--trace", type=Path, help=argparse.SUPPRESS)

@@ -2,7 +2,7 @@
 
 use crate::cumulated::Cumulated;
 use crate::direction::{cosine_weighted, in_cone, on_disc};
-use crate::lamps::{Chosen, Lamps, Place};
+use crate::lamps::{Chosen, Lamps, Reach};
 use crate::mirrors::Viewer;
 use crate::random::{Purpose, Uniforms};
 use crate::reading::Unmet;
@@ -25,8 +25,7 @@ pub(crate) struct Emitters<'a> {
     patches: Facets,
     /// What of all this lies together: the patches, as many sources as are left room for, and the rest.
     lamps: Lamps,
-    /// The lamp of each patch.
-    lamp_of_patch: Vec<usize>,
+    numbers: Numbers,
 }
 
 /// Patches that a sensor may see whole; the light of others is sampled.
@@ -69,7 +68,14 @@ impl<'a> Emitters<'a> {
         fluxes.extend(scene.sources.iter().map(|it| source_flux(it, surfaces)));
         let patches = Patches::new(surfaces, |t| even[t as usize]);
         let patches = Facets::new(surfaces, &patches, |_| true, 0.0, MOST_PATCHES);
-        let (lamps, lamp_of_patch) = lamps(scene, &triangles, &fluxes, &patches);
+        let numbers = Numbers::new(scene, &triangles, &patches);
+        let of_triangles = triangles.iter().map(|&it| numbers.of_patch(patches.of(it)));
+        let of_sources = (0..scene.sources.len()).map(|it| numbers.of_source(it));
+        let of_entries = of_triangles.chain(of_sources);
+        let lamps = Lamps::new(
+            numbers.reaches(scene, &patches),
+            fluxes.iter().copied().zip(of_entries),
+        );
         Self {
             surfaces,
             materials: &scene.materials,
@@ -78,7 +84,7 @@ impl<'a> Emitters<'a> {
             table: Cumulated::new(fluxes.into_iter()),
             patches,
             lamps,
-            lamp_of_patch,
+            numbers,
         }
     }
 
@@ -203,11 +209,9 @@ impl<'a> Emitters<'a> {
 
     /// Probability with which a viewer chooses a site, relative to a choice by flux.
     pub(crate) fn preference(&self, viewer: &Viewer, site: &Site) -> f64 {
-        let patches = self.lamp_of_patch.len();
-        let lamp = match (site.origin, site.patch) {
-            (Origin::Source(index), _) if index < MOST_SOURCES => patches + index,
-            (Origin::Surface(_), Some(patch)) => self.lamp_of_patch[patch as usize],
-            _ => patches + self.sources.len().min(MOST_SOURCES),
+        let lamp = match site.origin {
+            Origin::Source(index) => self.numbers.of_source(index),
+            Origin::Surface(_) => self.numbers.of_patch(site.patch),
         };
         self.lamps.preference(viewer, lamp)
     }
@@ -348,33 +352,53 @@ fn source_flux(source: &Source, surfaces: &Surfaces) -> f64 {
     }
 }
 
-/// The patches, as many sources as are told from each other, and the rest as lamps, with the lamp of each patch.
-fn lamps(
-    scene: &Scene,
-    triangles: &[u32],
-    fluxes: &[f64],
-    patches: &Facets,
-) -> (Lamps, Vec<usize>) {
-    let told = scene.sources.iter().take(MOST_SOURCES).map(Place::Source);
-    let places = patches.list().iter().map(Place::Patch).chain(told);
-    let places: Vec<Place> = places.chain([Place::Rest]).collect();
-    let rest = places.len() - 1;
-    let mut of_patch: Vec<usize> = (0..patches.list().len()).collect();
-    for &triangle in triangles {
-        // A patch of which some triangles face the other way shines on both sides.
-        if let Some(patch) = patches.of(triangle)
-            && let facet = &patches.list()[patch as usize]
-            && scene.surfaces.normal(triangle).dot(facet.normal) <= 0.0
-        {
-            of_patch[patch as usize] = rest;
+/// Which lamp is which: the patches come first, then the sources that are told from each other, and all others are the last.
+#[derive(Debug)]
+struct Numbers {
+    /// The lamp of each patch.
+    of_patch: Vec<usize>,
+    /// How many sources are told from each other.
+    sources: usize,
+}
+
+impl Numbers {
+    fn new(scene: &Scene, triangles: &[u32], patches: &Facets) -> Self {
+        let mut numbers = Self {
+            of_patch: (0..patches.list().len()).collect(),
+            sources: scene.sources.len().min(MOST_SOURCES),
+        };
+        let rest = numbers.rest();
+        for &triangle in triangles {
+            // A patch of which some triangles face the other way shines on both sides.
+            if let Some(patch) = patches.of(triangle)
+                && let facet = &patches.list()[patch as usize]
+                && scene.surfaces.normal(triangle).dot(facet.normal) <= 0.0
+            {
+                numbers.of_patch[patch as usize] = rest;
+            }
         }
+        numbers
     }
-    let lamp = |entry: usize| match triangles.get(entry) {
-        Some(&triangle) => patches
-            .of(triangle)
-            .map_or(rest, |it| of_patch[it as usize]),
-        None => (patches.list().len() + entry - triangles.len()).min(rest),
-    };
-    let entries = fluxes.iter().copied().zip((0..).map(lamp));
-    (Lamps::new(&places, entries), of_patch)
+
+    fn rest(&self) -> usize {
+        self.of_patch.len() + self.sources
+    }
+
+    /// The lamp of an emitting surface, which may belong to a patch.
+    fn of_patch(&self, patch: Option<u32>) -> usize {
+        patch.map_or(self.rest(), |it| self.of_patch[it as usize])
+    }
+
+    /// The lamp of a source.
+    fn of_source(&self, index: usize) -> usize {
+        self.of_patch.len() + index.min(self.sources)
+    }
+
+    /// What tells how much each lamp sends.
+    fn reaches(&self, scene: &Scene, patches: &Facets) -> Vec<Reach> {
+        let told = scene.sources.iter().take(self.sources);
+        let told = told.map(|it| Reach::Source(it.kind.clone()));
+        let reaches = patches.list().iter().map(Reach::of).chain(told);
+        reaches.chain([Reach::Unknown]).collect()
+    }
 }

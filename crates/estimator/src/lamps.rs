@@ -4,27 +4,15 @@
 //! brings would grow as their number.
 
 use crate::cumulated::Cumulated;
-use crate::mirrors::Viewer;
+use crate::mirrors::{Each, Viewer};
 use glam::DVec3;
 use malus_geometry::Facet;
-use malus_scene::{Source, SourceKind};
-use smallvec::SmallVec;
+use malus_scene::SourceKind;
 use std::f64::consts::PI;
 
 /// Share of the looks that go by what lamps would send. The others go by flux: for what is seen in mirrors, and past what
 /// stands before the best.
 const GUIDED: f64 = 0.75;
-
-/// Where a lamp is.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Place<'a> {
-    /// A flat patch that emits on the side of its normal.
-    Patch(&'a Facet),
-    /// A source without geometry.
-    Source(&'a Source),
-    /// Here and there: chosen by flux alone.
-    Rest,
-}
 
 /// All entries of a table of emitters, parted into lamps.
 #[derive(Debug)]
@@ -39,7 +27,8 @@ pub(crate) struct Lamps {
 /// Emitters that lie together.
 #[derive(Debug)]
 struct Lamp {
-    /// Its share of all flux.
+    /// Its flux, and its share of all flux.
+    flux: f64,
     share: f64,
     /// Its entries of the table, and their flux.
     entries: Vec<u32>,
@@ -47,17 +36,18 @@ struct Lamp {
     reach: Reach,
 }
 
-/// What a lamp sends to a point.
+/// What of a lamp tells how much it sends to a point.
 #[derive(Debug)]
-enum Reach {
-    /// Of a flat patch.
+pub(crate) enum Reach {
+    /// A flat patch that emits on the side of its normal, and a ball about it.
     Patch {
         centre: DVec3,
         normal: DVec3,
         radius: f64,
-        flux: f64,
     },
+    /// A source without geometry.
     Source(SourceKind),
+    /// Here and there: chosen by flux alone.
     Unknown,
 }
 
@@ -73,22 +63,23 @@ pub(crate) struct Chosen {
 }
 
 impl Lamps {
-    /// Parts a table into lamps at these places; `entries` are the flux of each entry and the number of its lamp.
-    pub(crate) fn new(places: &[Place], entries: impl Iterator<Item = (f64, usize)>) -> Self {
-        let mut parts = vec![(Vec::new(), Vec::new()); places.len()];
+    /// Parts a table into lamps; `entries` are the flux of each entry and the number of its lamp.
+    pub(crate) fn new(reaches: Vec<Reach>, entries: impl Iterator<Item = (f64, usize)>) -> Self {
+        let mut parts = vec![(Vec::new(), Vec::new()); reaches.len()];
         for (entry, (flux, lamp)) in (0..).zip(entries) {
             parts[lamp].0.push(entry);
             parts[lamp].1.push(flux);
         }
         let flux = |part: &(Vec<u32>, Vec<f64>)| part.1.iter().sum::<f64>();
         let total: f64 = parts.iter().map(flux).sum();
-        let lamps = parts.into_iter().zip(places).map(|(part, place)| {
+        let lamps = parts.into_iter().zip(reaches).map(|(part, reach)| {
             let flux = flux(&part);
             Lamp {
+                flux,
                 share: flux / total,
                 entries: part.0,
                 fluxes: Cumulated::new(part.1.into_iter()),
-                reach: Reach::of(place, flux),
+                reach,
             }
         });
         let lamps: Vec<Lamp> = lamps.collect();
@@ -152,9 +143,9 @@ impl Lamps {
     }
 
     /// About the irradiance that a viewer receives from each, were nothing in the way.
-    fn promises(&self, viewer: &Viewer) -> SmallVec<[f64; 16]> {
+    fn promises(&self, viewer: &Viewer) -> Each<f64> {
         let promise = |lamp: &Lamp| {
-            let promise = lamp.reach.promise(viewer);
+            let promise = lamp.reach.promise(viewer, lamp.flux);
             if promise.is_finite() { promise } else { 0.0 }
         };
         self.lamps.iter().map(promise).collect()
@@ -162,29 +153,23 @@ impl Lamps {
 }
 
 impl Reach {
-    fn of(place: &Place, flux: f64) -> Self {
-        match place {
-            Place::Patch(facet) => {
-                let (centre, square) = facet.ball();
-                Self::Patch {
-                    centre,
-                    normal: facet.normal,
-                    radius: square.sqrt(),
-                    flux,
-                }
-            }
-            Place::Source(source) => Self::Source(source.kind.clone()),
-            Place::Rest => Self::Unknown,
+    /// That of a flat patch.
+    pub(crate) fn of(patch: &Facet) -> Self {
+        let (centre, square) = patch.ball();
+        Self::Patch {
+            centre,
+            normal: patch.normal,
+            radius: square.sqrt(),
         }
     }
 
-    fn promise(&self, viewer: &Viewer) -> f64 {
+    /// About the irradiance that a viewer receives of a lamp of this flux, were nothing in the way.
+    fn promise(&self, viewer: &Viewer, flux: f64) -> f64 {
         match self {
             Self::Patch {
                 centre,
                 normal,
                 radius,
-                flux,
             } => {
                 let span = centre - viewer.point;
                 let square = span.length_squared() + radius * radius;
@@ -218,26 +203,23 @@ mod tests {
     use super::*;
     use malus_scene::Distribution;
 
-    fn point(position: DVec3, intensity: f64) -> Source {
-        Source {
-            name: String::new(),
-            kind: SourceKind::Point {
-                position,
-                intensity,
-                distribution: Distribution::Isotropic,
-            },
-            state: [1.0, 0.0, 0.0, 0.0],
-            axis: DVec3::X,
-        }
+    fn point(position: DVec3, intensity: f64) -> Reach {
+        Reach::Source(SourceKind::Point {
+            position,
+            intensity,
+            distribution: Distribution::Isotropic,
+        })
     }
 
     #[test]
     fn every_emitter_is_chosen_as_often_as_its_preference_says() {
         let (near, far) = (point(DVec3::Z, 1.0), point(DVec3::new(9.0, 0.0, 1.0), 4.0));
-        let places = [Place::Source(&near), Place::Source(&far), Place::Rest];
         // The last two have no place.
         let fluxes = [1.0, 4.0, 2.0, 3.0];
-        let lamps = Lamps::new(&places, fluxes.into_iter().zip([0, 1, 2, 2]));
+        let lamps = Lamps::new(
+            vec![near, far, Reach::Unknown],
+            fluxes.into_iter().zip([0, 1, 2, 2]),
+        );
         let viewer = Viewer {
             point: DVec3::ZERO,
             normal: DVec3::Z,

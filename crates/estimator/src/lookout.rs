@@ -5,6 +5,7 @@ use crate::medium::Medium;
 use crate::mirrors::{Chain, Viewer};
 use crate::receiver::Receiver;
 use crate::sight::Seen;
+use crate::site::Site;
 use crate::techniques::Techniques;
 use glam::DVec3;
 use malus_geometry::Hit;
@@ -250,13 +251,16 @@ impl Lookout {
         {
             return 0.0;
         }
-        let total = medium.emitters.flux(self.choice);
-        let site = medium.emitters.site_on(hit.triangle, hit.position, total);
-        let preference = || medium.emitters.preference(&self.viewer, &site);
+        let site = || {
+            let total = medium.emitters.flux(self.choice);
+            medium.emitters.site_on(hit.triangle, hit.position, total)
+        };
+        let preference = |site: &Site| medium.emitters.preference(&self.viewer, site);
         let probability = match self.chain.facets() {
-            Some([]) => preference(),
+            Some([]) => preference(&site()),
             Some(facets) if techniques.mirrored => {
-                preference() * medium.chain_probability(&self.viewer, &site, facets)
+                let site = site();
+                preference(&site) * medium.chain_probability(&self.viewer, &site, facets)
             }
             _ => 0.0,
         };

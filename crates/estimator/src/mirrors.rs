@@ -25,8 +25,8 @@ use view::{Ray, View};
 /// Mirrors one behind the other, on the stack where there are few.
 pub(crate) type Chain = SmallVec<[u32; 4]>;
 
-/// What is known of each mirror that may come next, on the stack where there are few.
-type Each<T> = SmallVec<[T; 16]>;
+/// What is known of each mirror that may come next, or of each lamp, on the stack where there are few.
+pub(crate) type Each<T> = SmallVec<[T; 16]>;
 
 /// Flat mirrors that are looked into; light in others is met by chance.
 const MOST: usize = 64;
