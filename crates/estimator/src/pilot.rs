@@ -22,7 +22,7 @@ const LAUNCHED: u64 = 48;
 
 /// Walks from all sensors in one round, of which each has one at least, and in all rounds that tell enough.
 const GATHERED: u64 = 16;
-const ENOUGH: u64 = 160;
+const ENOUGH: u64 = 192;
 
 /// By how much less walks from the emitters err in a run, whose points are many and spread evenly. Far from walls their
 /// light is smooth; it is not where walks from the sensors are needed.
