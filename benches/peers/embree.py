@@ -4,8 +4,9 @@
     benches/peers/embree.py FILE [--malus PATH] [--rounds N] [--seconds T]
 
 FILE is a scene or a mesh, as `malus bench-bvh` takes it. The script makes a virtual environment of its own with
-embreex (Embree 4, single rays) from PyPI in target/peers/embree. PATH is that of the variable MALUS unless it is given. Both programs trace pieces of 2048 rays on one thread;
-a round takes one after the other, and a rate is that of the median, or of the fastest, of all repetitions of each piece.
+embreex (Embree 4, single rays) from PyPI in target/peers/embree. PATH is that of the variable MALUS unless it is given.
+Both programs trace pieces of 2048 rays on one thread; a round takes one after the other, and a rate is that of the
+median, or of the fastest, of all repetitions of each piece.
 
 Embree is called through a loop in compiled Python that allocates no memory a ray, in single precision, at the quality
 that embreex chooses; malus decides in double precision.

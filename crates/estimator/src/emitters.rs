@@ -25,6 +25,7 @@ pub(crate) struct Emitters<'a> {
     patches: Facets,
     /// What of all this lies together: the patches, as many sources as are left room for, and the rest.
     lamps: Lamps,
+    /// Which of them each emitter belongs to.
     numbers: Numbers,
 }
 

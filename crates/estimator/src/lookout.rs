@@ -5,7 +5,6 @@ use crate::medium::Medium;
 use crate::mirrors::{Chain, Viewer};
 use crate::receiver::Receiver;
 use crate::sight::Seen;
-use crate::site::Site;
 use crate::techniques::Techniques;
 use glam::DVec3;
 use malus_geometry::Hit;
@@ -251,16 +250,15 @@ impl Lookout {
         {
             return 0.0;
         }
-        let site = || {
-            let total = medium.emitters.flux(self.choice);
-            medium.emitters.site_on(hit.triangle, hit.position, total)
-        };
-        let preference = |site: &Site| medium.emitters.preference(&self.viewer, site);
         let probability = match self.chain.facets() {
-            Some([]) => preference(&site()),
-            Some(facets) if techniques.mirrored => {
-                let site = site();
-                preference(&site) * medium.chain_probability(&self.viewer, &site, facets)
+            Some(facets) if facets.is_empty() || techniques.mirrored => {
+                let total = medium.emitters.flux(self.choice);
+                let site = medium.emitters.site_on(hit.triangle, hit.position, total);
+                let seen = match facets {
+                    [] => 1.0,
+                    _ => medium.chain_probability(&self.viewer, &site, facets),
+                };
+                medium.emitters.preference(&self.viewer, &site) * seen
             }
             _ => 0.0,
         };

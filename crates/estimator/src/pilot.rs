@@ -14,8 +14,8 @@ use malus_geometry::Targets;
 use rayon::prelude::*;
 
 /// Rounds of the pilot: so few where these tell enough, and at most so many.
-const FEWEST_ROUNDS: u32 = 8;
-const MOST_ROUNDS: u32 = 18;
+const FEWEST_ROUNDS: u64 = 8;
+const MOST_ROUNDS: u64 = 18;
 
 /// Walks of the pilot from the emitters, at least.
 const LAUNCHED: u64 = 48;
@@ -100,8 +100,9 @@ impl<'a> Pilot<'a> {
         let free = receivers.iter().filter(|it| takes_part(it)).count();
         let free = free.max(1) as u64;
         let walks = (GATHERED / free).max(1);
-        let (fewest, most) = (u64::from(FEWEST_ROUNDS), u64::from(MOST_ROUNDS));
-        let rounds = ENOUGH.div_ceil(walks * free).clamp(fewest, most);
+        let rounds = ENOUGH
+            .div_ceil(walks * free)
+            .clamp(FEWEST_ROUNDS, MOST_ROUNDS);
         Self {
             rounds: rounds as u32,
             launched: LAUNCHED.div_ceil(rounds),
