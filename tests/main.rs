@@ -21,6 +21,8 @@ mod direct;
 // Where the flux goes.
 mod ledger;
 mod neighbours;
+// Walks that correct a solution of the radiosity equation.
+mod radiosity;
 // Every technique weighed against every other: nothing is lost, nothing counted twice.
 mod complete;
 // Sheets that light passes.

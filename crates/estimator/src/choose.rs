@@ -14,6 +14,20 @@ use malus_scene::{Estimator, Material, Scene, Settings};
 /// distance: its variance grows as the inverse square of the distance.
 const TRUSTED: f64 = 0.02;
 
+/// Those of walks from sensors that correct a guess, and why they are used.
+pub(crate) const CORRECTING: (Techniques, &str) = (
+    Techniques {
+        mirrored: true,
+        local: 0.0,
+        bridged: 0.0,
+        block: 0,
+        gather: true,
+        shared: true,
+    },
+    "an empty convex room without mirrors: a solution of its radiosity equation on tiles, and walks from the sensors that \
+     correct it; nothing is lost",
+);
+
 /// The techniques of an estimator, and one sentence on why it is used.
 pub(crate) fn techniques(
     asked: Estimator,
@@ -31,6 +45,7 @@ pub(crate) fn techniques(
                 bridged: 0.0,
                 block: 0,
                 gather: true,
+                shared: false,
             },
             "asked for",
         ),
@@ -41,6 +56,7 @@ pub(crate) fn techniques(
                 bridged: 0.0,
                 block,
                 gather: true,
+                shared: joined,
             },
             "walks from both ends and images in flat mirrors, weighted against each other: nothing is lost",
         ),

@@ -46,7 +46,7 @@ struct Ray<'a> {
     steps: Vec<Step>,
 }
 
-/// What each variant has at each sensor from the surfaces in `sight` and from all point, spot and distant sources that it
+/// What each variant has at each sensor from the surfaces in `sight`, by a guess of what surfaces scatter, and from all point, spot and distant sources that it
 /// sees: straight, and where walks look into mirrors by all listed images.
 pub(crate) fn known<const N: usize>(
     passes: &Passes,
@@ -65,6 +65,8 @@ pub(crate) fn known<const N: usize>(
         for (variant, values) in values.chunks_mut(channels.count).enumerate() {
             let variation = &passes.main.variations[variant];
             let straight = sight.map_or(0.0, |s| s.irradiance(sensor, &variation.materials));
+            let radiosity = passes.main.radiosity;
+            let straight = straight + radiosity.map_or(0.0, |it| it.at_sensor(receiver));
             let main = sum::<N>(receiver, &rays, variation);
             values[..N].copy_from_slice(&main);
             values[0] += straight;

@@ -157,7 +157,7 @@ impl Sums<'_, '_> {
             }
             // What is shared has left a surface unpolarised.
             let s0 = shared.light()[0];
-            if s0 <= 0.0 {
+            if s0 == 0.0 {
                 continue;
             }
             for (sums, share) in self.neighbours.iter_mut().zip(shares) {

@@ -33,6 +33,7 @@ mod pass;
 mod path;
 mod picture;
 mod pilot;
+mod radiosity;
 mod random;
 mod reading;
 mod receiver;

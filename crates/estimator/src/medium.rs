@@ -4,6 +4,7 @@ use crate::cover::{Cover, Odds};
 use crate::emitters::Emitters;
 use crate::glints::Glints;
 use crate::mirrors::{ASIDE, Chain, Drawn, Mirrors, Target, Viewer};
+use crate::radiosity::Radiosity;
 use crate::random::Fresh;
 use crate::site::Site;
 use crate::spread::Spread;
@@ -34,6 +35,8 @@ pub(crate) struct Medium<'a> {
     pub glints: &'a Glints,
     /// Whether anything lets light through.
     pub panes: bool,
+    /// A guess of what surfaces scatter, which walks from sensors correct.
+    pub radiosity: Option<&'a Radiosity<'a>>,
 }
 
 /// A mirror or a pane on the way of light, met along a direction of tracing.

@@ -166,6 +166,7 @@ impl Modelled {
             mirrors: &self.mirrors,
             glints: &self.glints,
             panes: self.materials.iter().any(|m| m.optics.is_pane()),
+            radiosity: None,
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::bridge::{Candidates, Landing};
 use crate::launched::Rival;
 use crate::medium::Step;
+use crate::radiosity::Guess;
 use crate::site::State;
 use crate::variation::Origin;
 use glam::DVec3;
@@ -89,6 +90,8 @@ pub(crate) struct Vertex {
     pub shared: bool,
     /// True where the back of a one-sided surface was met: it neither reflects nor emits.
     pub black: bool,
+    /// What is known beforehand of the light here.
+    pub guess: Guess,
     /// For a walk from an emitter: the techniques that compete with joining this point to a sensor.
     pub rival: Rival,
 }

@@ -153,7 +153,8 @@ impl<'a> Pilot<'a> {
         // So few walks seldom meet what is rare and bright, and then at few sensors: what one has met warns the others.
         let gathered = needs.iter().map(|n| n.gathered).sum::<f64>() / count;
         let own = f64::from(self.rounds) * self.walks as f64;
-        let telling = match needs.iter().all(|n| n.launched <= 0.0) {
+        let guessed = self.passes.main.radiosity.is_some();
+        let telling = match !guessed && needs.iter().all(|n| n.launched <= 0.0) {
             true => TELLING_BETWEEN_MIRRORS,
             false => TELLING,
         };
@@ -173,6 +174,11 @@ impl<'a> Pilot<'a> {
         let count = self.channels.count;
         let mut launched = vec![0.0; self.receivers.len() * count];
         let mut launches = Launches::default();
+        let walks = match self.passes.techniques.local > 0.0 {
+            true => self.launched,
+            // They correct a guess alone.
+            false => 0,
+        };
         let local = local::<1>(
             &self.passes,
             &self.channels,
@@ -183,7 +189,7 @@ impl<'a> Pilot<'a> {
                 allocation: self.tried,
             },
             stream,
-            0..self.launched,
+            0..walks,
             &mut launched,
             &mut launches,
         );

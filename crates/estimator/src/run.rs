@@ -2,7 +2,7 @@
 
 use crate::allocation::{Allocation, Sharing};
 use crate::checkpoints::Checkpoints;
-use crate::choose::{blind_spots, erratic, techniques};
+use crate::choose::{self, blind_spots, erratic};
 use crate::direct::{self, Cells};
 use crate::emitters::Emitters;
 use crate::engine::Engine;
@@ -14,6 +14,7 @@ use crate::medium::Medium;
 use crate::neighbours::{Neighbours, memberships};
 use crate::pass::{Channels, Modelled, Passes, has_mirrors};
 use crate::pilot::Stations;
+use crate::radiosity::Radiosity;
 use crate::reading::{Readings, Unmet};
 use crate::receiver::Receiver;
 use crate::results::{Answer, Group, Progress, Results, Stop};
@@ -61,6 +62,7 @@ pub fn resume(
         scenes: &[scene],
         covering: scene,
         sharing: Sharing::Points,
+        alone: true,
     };
     Ok(alone.run(settings, state, watch)?.first)
 }
@@ -106,6 +108,7 @@ pub fn resume_together(
         scenes,
         covering: &covering,
         sharing,
+        alone: false,
     };
     ensemble.run(settings, state, watch)
 }
@@ -117,6 +120,8 @@ struct Ensemble<'a> {
     covering: &'a Scene,
     /// How walks are shared out.
     sharing: Sharing<'a>,
+    /// Whether no other scene is to be compared with the one: walks that correct a guess keep no step with others.
+    alone: bool,
 }
 
 impl Ensemble<'_> {
@@ -160,20 +165,30 @@ fn run_with<const N: usize>(
         scenes,
         covering: scene,
         sharing,
+        alone,
     } = *ensemble;
     let mirrors = scenes.iter().any(|it| has_mirrors(&it.materials));
     let channels = Channels::new(mirrors, settings, representation);
     let emitters = Emitters::new(scene);
     let mut receivers = Receiver::all(scene);
-    let (techniques, estimator_reason) =
-        techniques(settings.estimator, &scene.surfaces, &receivers);
     let main = Modelled::new(scenes, scene, settings.model);
     let apart = channels.apart.map(|_| match settings.model {
         Model::Diffuse => Modelled::new(scenes, scene, Model::Scalar),
         Model::Polarised | Model::Scalar => Modelled::new(scenes, scene, Model::Diffuse),
     });
+    let medium = main.medium(scene, &emitters);
+    let radiosity = (settings.estimator == Estimator::Auto && alone && apart.is_none())
+        .then(|| Radiosity::new(&medium, &receivers))
+        .flatten();
+    let (techniques, estimator_reason) = match radiosity {
+        Some(_) => choose::CORRECTING,
+        None => choose::techniques(settings.estimator, &scene.surfaces, &receivers),
+    };
     let passes = Passes {
-        main: main.medium(scene, &emitters),
+        main: Medium {
+            radiosity: radiosity.as_ref(),
+            ..medium
+        },
         apart: apart.as_ref().map(|apart| apart.medium(scene, &emitters)),
         techniques,
     };
@@ -194,15 +209,15 @@ fn run_with<const N: usize>(
         None => exact::known::<N>(&passes, &channels, &receivers, sight.as_ref()),
     };
     let targets = targets(&scene.surfaces, &receivers);
-    let share = techniques.block > 0 && !panes;
+    let share = techniques.shared && !panes;
     let aims = Aims::all(&passes, &receivers);
-    let memberships = match techniques.block {
-        0 => (0..receivers.len()).collect(),
-        _ => memberships(&scene.surfaces, &receivers),
+    let memberships = match techniques.shared {
+        false => (0..receivers.len()).collect(),
+        true => memberships(&scene.surfaces, &receivers),
     };
     let allocation = match sharing {
         Sharing::Like(like) if like.fits(receivers.len()) => like.clone(),
-        _ if techniques.gather && techniques.local > 0.0 => {
+        _ if techniques.shared => {
             let exact = |sensor: usize| known[0].at(sensor, 0);
             let stations = Stations {
                 receivers: &receivers,

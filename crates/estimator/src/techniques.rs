@@ -15,6 +15,8 @@ pub(crate) struct Techniques {
     pub bridged: f64,
     /// Walks are taken from the sensors.
     pub gather: bool,
+    /// Sensors share them with their neighbours, by a pilot.
+    pub shared: bool,
 }
 
 impl Techniques {
@@ -25,6 +27,7 @@ impl Techniques {
         bridged: 0.0,
         block: 0,
         gather: false,
+        shared: false,
     };
 
     /// By how much likelier than one from a sensor a walk from an emitter is scattered: one such walk serves many others.

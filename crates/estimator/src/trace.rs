@@ -17,6 +17,7 @@ use crate::medium::{Medium, Meeting};
 use crate::mirrors::Viewer;
 use crate::neighbours::Member;
 use crate::path::{Event, Path, Vertex};
+use crate::radiosity::Guess;
 use crate::random::{Purpose, Uniforms};
 use crate::receiver::Receiver;
 use crate::sight::Seen;
@@ -242,7 +243,11 @@ impl<'a> Walk<'a> {
         }
         self.depth += 1;
         let (hit, meeting) = self.medium.meet(self.origin, self.direction)?;
-        let emission = self.emission_share(&hit, &meeting);
+        let emission = match self.guesses() && self.depth > 1 {
+            // Known where the walk came from.
+            true => 0.0,
+            false => self.emission_share(&hit, &meeting),
+        };
         // Aiming is for the first mirror alone.
         let aim = self.aim.filter(|_| self.depth == 1);
         let density = aim.map_or(0.0, |aim| {
@@ -274,6 +279,7 @@ impl<'a> Walk<'a> {
             flat: meeting.facet.is_some(),
             shared: false,
             black: meeting.black(),
+            guess: self.guess(&hit, normal),
             rival: Rival::default(),
         };
         if vertex.black {
@@ -307,7 +313,7 @@ impl<'a> Walk<'a> {
             }
         }
         vertex.diffuse = odds.diffuse;
-        if odds.diffuse > 0.0 && meeting.cover.scatters() {
+        if odds.diffuse > 0.0 && meeting.cover.scatters() && !self.guesses() {
             self.join(path, &mut vertex, &meeting);
         }
         let [lobe, u, v, split] = self.uniforms.at(self.depth, self.role.scattering());
@@ -388,6 +394,22 @@ impl<'a> Walk<'a> {
         let event = vertex.event;
         path.vertices.push(vertex);
         Some(event)
+    }
+
+    /// Whether it corrects a guess, which looks at all emitters from everywhere.
+    fn guesses(&self) -> bool {
+        self.medium.radiosity.is_some() && matches!(self.role, Role::Looking(_))
+    }
+
+    /// What is known beforehand of the light at a point where a walk from a sensor meets a surface.
+    fn guess(&self, hit: &Hit, normal: DVec3) -> Guess {
+        match (&self.role, self.medium.radiosity) {
+            (Role::Looking(_), Some(radiosity)) => {
+                let [_, chance, ..] = self.uniforms.at(self.depth, Purpose::Bridge);
+                radiosity.at(hit.triangle, hit.position, normal, chance)
+            }
+            _ => Guess::default(),
+        }
     }
 
     /// What a scattering vertex sees, or what competes with joining it to a sensor.

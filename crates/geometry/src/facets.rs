@@ -161,10 +161,21 @@ fn hull(points: impl Iterator<Item = DVec3>, origin: DVec3, normal: DVec3) -> Ve
     let flat = points.map(|v| DVec2::new((v - origin).dot(x), (v - origin).dot(y)));
     let mut corners = convex(outermost(flat.collect()));
     if corners.len() > CORNERS {
-        corners = rectangle(&corners);
+        corners = rectangle(&corners).to_vec();
     }
     let lifted = corners.iter().map(|p| origin + x * p.x + y * p.y);
     lifted.collect()
+}
+
+/// The smallest rectangle that holds points (some at least) of one plane, anticlockwise about its normal.
+pub(crate) fn rectangle_about(points: &[DVec3], normal: DVec3) -> [DVec3; 4] {
+    let (x, y) = across(normal);
+    let origin = points[0];
+    let flat = points
+        .iter()
+        .map(|&v| DVec2::new((v - origin).dot(x), (v - origin).dot(y)));
+    let corners = rectangle(&convex(outermost(flat.collect())));
+    corners.map(|p| origin + x * p.x + y * p.y)
 }
 
 /// A ball about a polygon: its centre and the square of its radius.
@@ -246,7 +257,7 @@ fn convex(mut points: Vec<DVec2>) -> Vec<DVec2> {
 }
 
 /// The smallest rectangle about a convex polygon that has a side along one of its longest edges.
-fn rectangle(corners: &[DVec2]) -> Vec<DVec2> {
+fn rectangle(corners: &[DVec2]) -> [DVec2; 4] {
     let next = corners.iter().cycle().skip(1);
     let mut edges: Vec<DVec2> = corners.iter().zip(next).map(|(a, &b)| b - a).collect();
     edges.sort_by(|a, b| b.length_squared().total_cmp(&a.length_squared()));
@@ -266,12 +277,9 @@ fn rectangle(corners: &[DVec2]) -> Vec<DVec2> {
         .into_iter()
         .map(about)
         .min_by(|a, b| area(a).total_cmp(&area(b)));
-    let Some((along, (left, right), (bottom, top))) = best else {
-        return corners.to_vec();
-    };
+    let (along, (left, right), (bottom, top)) = best.unwrap_or_default();
     [(left, bottom), (right, bottom), (right, top), (left, top)]
         .map(|(x, y)| along * x + along.perp() * y)
-        .to_vec()
 }
 
 #[cfg(test)]

@@ -32,6 +32,7 @@ pub mod solid;
 mod bvh;
 mod clean;
 mod coincidence;
+mod contour;
 mod crossing;
 mod edges;
 mod error;
@@ -45,6 +46,7 @@ mod pyramid;
 mod surfaces;
 #[cfg(test)]
 mod testing;
+mod tiles;
 mod triangle;
 mod weld;
 
@@ -56,4 +58,5 @@ pub use facets::{Facet, Facets};
 pub use mesh::Mesh;
 pub use patches::Patches;
 pub use surfaces::{Hit, Surfaces};
+pub use tiles::{Field, Grid, Tile, Tiles, jump};
 pub use triangle::Triangle;

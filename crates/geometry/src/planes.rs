@@ -1,6 +1,6 @@
 //! The planes that all surfaces lie in, where they are few: points on one side of each see each other.
 
-use crate::Mesh;
+use crate::{Mesh, Triangle};
 use glam::DVec3;
 
 /// Most planes that are kept: beyond, asking for all of them costs as much as a ray.
@@ -24,13 +24,7 @@ impl Planes {
         let mut planes: Vec<(DVec3, f64)> = Vec::new();
         for index in 0..mesh.len() {
             let triangle = mesh.triangle(index);
-            let within = |&(normal, height): &(DVec3, f64)| {
-                let off = |vertex: DVec3| (normal.dot(vertex) - height).abs();
-                triangle
-                    .vertices
-                    .iter()
-                    .all(|&vertex| off(vertex) <= 0.25 * slack)
-            };
+            let within = |plane: &(DVec3, f64)| holds(plane, &triangle, slack);
             // Neighbours in the file mostly lie in the plane found last.
             if planes.iter().rev().any(within) {
                 continue;
@@ -71,6 +65,39 @@ impl Planes {
         }
         Some(sides)
     }
+
+    /// Unit normals of all planes on the side of a point (in m) that no part of the mesh lies behind; `None` where there is
+    /// no such point.
+    pub fn walls(&self, mesh: &Mesh, point: DVec3) -> Option<Vec<DVec3>> {
+        self.sides(point)?;
+        let toward = |&(normal, height): &(DVec3, f64)| {
+            let side = (normal.dot(point) - height).signum();
+            let behind = |index| {
+                let vertices = mesh.triangle(index).vertices;
+                let off = |vertex: DVec3| side * (normal.dot(vertex) - height);
+                vertices.iter().any(|&vertex| off(vertex) < -self.margin)
+            };
+            (!(0..mesh.len()).any(behind)).then_some(normal * side)
+        };
+        self.planes.iter().map(toward).collect()
+    }
+
+    /// The plane that a triangle of the mesh lies in.
+    pub fn of_triangle(&self, triangle: &Triangle) -> Option<usize> {
+        let slack = 0.5 * self.margin;
+        let within = |plane: &(DVec3, f64)| holds(plane, triangle, slack);
+        // As they were found, the last first.
+        self.planes.iter().rposition(within)
+    }
+}
+
+/// Whether a triangle lies in a plane where triangles are thicker by `slack` for rays.
+fn holds(&(normal, height): &(DVec3, f64), triangle: &Triangle, slack: f64) -> bool {
+    let off = |vertex: DVec3| (normal.dot(vertex) - height).abs();
+    triangle
+        .vertices
+        .iter()
+        .all(|&vertex| off(vertex) <= 0.25 * slack)
 }
 
 #[cfg(test)]

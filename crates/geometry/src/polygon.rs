@@ -100,7 +100,7 @@ impl Polygon {
     }
 
     /// The parts on the left (inside) and the right of a line (Sutherland and Hodgman 1974, once for each side).
-    fn split(&self, from: DVec2, to: DVec2) -> (Self, Self) {
+    pub fn split(&self, from: DVec2, to: DVec2) -> (Self, Self) {
         let along = to - from;
         let side = |corner: DVec3| along.perp_dot(corner.truncate() - from);
         let (mut left, mut right) = (Vec::new(), Vec::new());

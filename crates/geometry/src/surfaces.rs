@@ -173,6 +173,22 @@ impl Surfaces {
         self.planes.sides(point)
     }
 
+    /// Unit normals of the planes that all surfaces lie in, towards a point (in m) from which all of them are seen whole, as
+    /// they are from all points of its cell; `None` where it is no such point.
+    pub(crate) fn walls(&self, inside: DVec3) -> Option<Vec<DVec3>> {
+        self.planes.walls(&self.mesh, inside)
+    }
+
+    /// In which of these planes a triangle lies.
+    pub(crate) fn wall_of(&self, triangle: u32) -> Option<usize> {
+        self.planes.of_triangle(&self.triangle(triangle))
+    }
+
+    /// The later triangles that cover part of this one, the latest first.
+    pub(crate) fn over(&self, triangle: u32) -> impl Iterator<Item = u32> {
+        self.coverings.over(triangle)
+    }
+
     /// Points (in m) with normals, made ready for [`visible_from`](Self::visible_from); one whose normal is zero is seen
     /// from nowhere.
     ///

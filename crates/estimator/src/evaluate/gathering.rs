@@ -4,6 +4,7 @@ use super::chain::Chain;
 use super::{Reading, Readings, bridged, emitted, passed_at};
 use crate::gather::Part;
 use crate::path::{Connection, Event, Path, Vertex};
+use crate::radiosity::Guess;
 use crate::receiver::Receiver;
 use crate::variation::Variation;
 
@@ -77,11 +78,24 @@ impl<'r, const N: usize> Gathering<'r, N> {
                 reading.found[1] += read.i();
                 reading.sum += read;
             }
+            self.shared |= vertex.shared;
+            let scattering = match vertex.black {
+                true => 0.0,
+                false => material.optics.scattering(),
+            };
+            let Guess {
+                irradiance,
+                exitance,
+            } = vertex.guess;
+            let missing = scattering * irradiance - exitance;
+            if missing != 0.0 {
+                let read = self.chain.pass(self.receiver, -vertex.arriving, None)
+                    * (missing * self.receiver.per_exitance);
+                self.reading().sum += read;
+            }
             if vertex.black {
                 return;
             }
-            self.shared |= vertex.shared;
-            let scattering = material.optics.scattering();
             for connection in &path.connections[vertex.connections.clone()] {
                 let chain =
                     self.chain
