@@ -21,7 +21,7 @@ use malus_geometry::{Field, Surfaces, Tile, Tiles};
 use solution::{Room, Solution, Table};
 
 /// Cells of a room, about.
-const CELLS: usize = 216;
+const CELLS: usize = 150;
 
 /// How often the table is made up for.
 const CORRECTED: f64 = 0.125;

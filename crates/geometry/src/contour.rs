@@ -69,18 +69,20 @@ impl Contour {
         }
     }
 
-    /// For each line, what it adds to the form factors (shares of density cos θ/π) of all that lies to its left, seen from a
+    /// For each line (there is a place for each), what it adds to the form factors (shares of density cos θ/π) of all that lies to its left, seen from a
     /// point (in m) of a surface with this unit normal, before and above which that lies whole.
-    pub fn shares(&self, point: DVec3, normal: DVec3, shares: &mut Vec<f64>) {
-        let first = shares.len();
-        let lines = &self.lines;
+    pub fn shares(&self, point: DVec3, normal: DVec3, shares: &mut [f64]) {
         self.arch.dispatch(Shares {
-            lines,
+            lines: &self.lines,
             point,
             normal,
             shares,
         });
-        shares.truncate(first + self.len);
+    }
+
+    /// How many lines there are.
+    pub fn len(&self) -> usize {
+        self.len
     }
 
     /// Those of weights that are not 0.
@@ -106,7 +108,7 @@ impl Contour {
 impl Jumps {
     /// How many lines there are.
     pub fn len(&self) -> usize {
-        self.contour.len
+        self.contour.len()
     }
 
     /// The sum of weights times [shares](Contour::shares).
@@ -128,7 +130,7 @@ struct Shares<'a> {
     lines: &'a [Lines],
     point: DVec3,
     normal: DVec3,
-    shares: &'a mut Vec<f64>,
+    shares: &'a mut [f64],
 }
 
 impl WithSimd for Shares<'_> {
@@ -136,9 +138,9 @@ impl WithSimd for Shares<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        for lines in self.lines {
-            let shares = lambert(lines, self.point, self.normal);
-            self.shares.extend_from_slice(&shares);
+        for (lines, shares) in self.lines.iter().zip(self.shares.chunks_mut(LANES)) {
+            let all = lambert(lines, self.point, self.normal);
+            shares.copy_from_slice(&all[..shares.len()]);
         }
     }
 }
@@ -170,29 +172,42 @@ impl WithSimd for Sum<'_> {
 #[inline(always)]
 fn lambert(lines: &Lines, point: DVec3, normal: DVec3) -> [f64; LANES] {
     let [ax, ay, az, bx, by, bz] = lines;
-    let mut shares = [0.0; LANES];
+    let mut angles = [0.0; LANES];
+    let mut heights = [0.0; LANES];
+    let mut sines = [0.0; LANES];
+    let mut cosines = [0.0; LANES];
     for lane in 0..LANES {
         let (ax, ay, az) = (ax[lane] - point.x, ay[lane] - point.y, az[lane] - point.z);
         let (bx, by, bz) = (bx[lane] - point.x, by[lane] - point.y, bz[lane] - point.z);
         let (x, y, z) = (ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx);
-        let sine2 = x * x + y * y + z * z;
+        let sine = x * x + y * y + z * z;
         let cosine = ax * bx + ay * by + az * bz;
-        let inverse = 1.0 / (sine2 + cosine * cosine).sqrt();
+        let inverse = 1.0 / (sine + cosine * cosine).sqrt();
         let along = (cosine * inverse).abs();
         let mut ratio = ANGLE[0];
         for coefficient in &ANGLE[1..] {
             ratio = ratio * along + coefficient;
         }
-        // The angle over its sine, and from there over the product of lengths and sine.
-        let acute = ratio * inverse;
-        let obtuse = PI / sine2.max(f64::MIN_POSITIVE).sqrt() - acute;
-        let angle = if cosine >= 0.0 { acute } else { obtuse };
-        let height = x * normal.x + y * normal.y + z * normal.z;
-        shares[lane] = if sine2 > 0.0 {
-            -angle * height / TAU
-        } else {
-            0.0
-        };
+        // The angle, or what it lacks to 180°, over its sine, and from there over the product of lengths and sine.
+        angles[lane] = ratio * inverse;
+        heights[lane] = x * normal.x + y * normal.y + z * normal.z;
+        (sines[lane], cosines[lane]) = (sine, cosine);
+    }
+    // Next to long lines alone.
+    if cosines.iter().any(|&cosine| cosine < 0.0) {
+        for lane in 0..LANES {
+            let obtuse = PI / sines[lane].max(f64::MIN_POSITIVE).sqrt() - angles[lane];
+            angles[lane] = if cosines[lane] < 0.0 {
+                obtuse
+            } else {
+                angles[lane]
+            };
+        }
+    }
+    let mut shares = [0.0; LANES];
+    for lane in 0..LANES {
+        let share = -angles[lane] * heights[lane] / TAU;
+        shares[lane] = if sines[lane] > 0.0 { share } else { 0.0 };
     }
     shares
 }
@@ -213,9 +228,8 @@ mod tests {
             let across = start.cross(end);
             let angle = across.length().atan2(start.dot(end));
             let exact = -angle * across.normalize().dot(normal) / TAU;
-            let mut shares = Vec::new();
+            let mut shares = [0.0; 11];
             Contour::new(&lines).shares(from, normal, &mut shares);
-            assert_eq!(shares.len(), lines.len());
             assert!(shares.iter().all(|share| (share - exact).abs() < 1e-12));
         }
     }

@@ -380,19 +380,18 @@ impl Tiles {
             .copied()
     }
 
-    /// How much of the jump at each of these lines a point (in m) of a plane sees: the sum of jumps times shares is the sum
-    /// over all tiles of value times form factor.
-    #[must_use]
-    pub fn shares(&self, plane: usize, point: DVec3) -> Vec<f64> {
+    /// How much of the jump at each of these lines (there is a place for each) a point (in m) of a plane sees: the sum of jumps
+    /// times shares is the sum over all tiles of value times form factor.
+    pub fn shares(&self, plane: usize, point: DVec3, mut shares: &mut [f64]) {
         let normal = self.grids[plane].normal;
-        let mut shares = Vec::new();
-        for (other, (contour, borders)) in self.borders.iter().enumerate() {
+        for (other, (contour, _)) in self.borders.iter().enumerate() {
+            let (own, rest) = shares.split_at_mut(contour.len());
             match other == plane {
-                true => shares.resize(shares.len() + borders.len(), 0.0),
-                false => contour.shares(point, normal, &mut shares),
+                true => own.fill(0.0),
+                false => contour.shares(point, normal, own),
             }
+            shares = rest;
         }
-        shares
     }
 
     /// A value for each tile, made ready for sums.

@@ -15,54 +15,76 @@ const SETTLED: f64 = 2e-3;
 /// The least that a room is taken to keep of its light at each reflection, on average: where it keeps none, no guess is right.
 const KEPT: f64 = 1e-4;
 
-/// Irradiances at the corners of all cells, in unit/m².
+/// Where irradiances are tabled: at the corners of all cells, those of each plane row by row.
+#[derive(Clone)]
+struct Nodes {
+    /// Plane and place, in m.
+    list: Vec<(usize, DVec3)>,
+    /// The first of each plane.
+    starts: Vec<usize>,
+}
+
+impl Nodes {
+    /// Those of a room; where a corner lies outside it, one in the largest tile about.
+    fn new(tiles: &Tiles) -> Self {
+        let mut nodes = Self {
+            list: Vec::new(),
+            starts: Vec::new(),
+        };
+        for (plane, grid) in tiles.grids().iter().enumerate() {
+            nodes.starts.push(nodes.list.len());
+            let [x, y] = grid.counts();
+            for j in 0..=y {
+                let row = (0..=x).map(|i| (plane, node(tiles, plane, [i, j])));
+                nodes.list.extend(row);
+            }
+        }
+        nodes
+    }
+
+    /// A table of values at all of them.
+    fn table(&self, value: impl Fn(usize, DVec3) -> f64 + Sync) -> Table {
+        let values = self.list.par_iter();
+        let values = values.map(|&(plane, point)| value(plane, point));
+        self.filled(values.collect())
+    }
+
+    fn filled(&self, values: Vec<f64>) -> Table {
+        Table {
+            values,
+            starts: self.starts.clone(),
+        }
+    }
+}
+
+/// Where to ask for what is to stand at a corner of cells.
+fn node(tiles: &Tiles, plane: usize, corner: [usize; 2]) -> DVec3 {
+    let grids = tiles.grids();
+    let grid = &grids[plane];
+    let point = grid.point(aside(grid, corner.map(|it| it as f64)));
+    let mut others = grids.iter().enumerate().filter(|it| it.0 != plane);
+    if others.all(|(_, wall)| wall.above(point) >= 0.0) {
+        return point;
+    }
+    let about = |tile: &&Tile| {
+        let near =
+            |axis: usize| tile.cell[axis] == corner[axis] || tile.cell[axis] + 1 == corner[axis];
+        tile.plane == plane && near(0) && near(1)
+    };
+    let about = tiles.list().iter().filter(about);
+    let largest = about.max_by(|a, b| a.area.total_cmp(&b.area));
+    // About corners without a tile nothing is asked for.
+    let largest = largest.filter(|tile| tile.area > 0.0);
+    largest.map_or(point, |tile| tile.centre)
+}
+
+/// Irradiances at such nodes, in unit/m².
 pub(super) struct Table {
-    /// Those of each plane, row by row.
-    planes: Vec<Vec<f64>>,
+    values: Vec<f64>,
+    starts: Vec<usize>,
 }
 
 impl Table {
-    /// Where the values are, in the same order: where a corner lies outside the room, in the largest tile about it.
-    fn nodes(tiles: &Tiles) -> Vec<Vec<DVec3>> {
-        let grids = tiles.grids();
-        let node = |plane: usize, at: [usize; 2]| {
-            let grid = &grids[plane];
-            let point = grid.point(aside(grid, at.map(|it| it as f64)));
-            let mut others = grids.iter().enumerate().filter(|it| it.0 != plane);
-            if others.all(|(_, wall)| wall.above(point) >= 0.0) {
-                return point;
-            }
-            let about = |tile: &&Tile| {
-                let near =
-                    |axis: usize| tile.cell[axis] == at[axis] || tile.cell[axis] + 1 == at[axis];
-                tile.plane == plane && near(0) && near(1)
-            };
-            let about = tiles.list().iter().filter(about);
-            let largest = about.max_by(|a, b| a.area.total_cmp(&b.area));
-            // About corners without a tile nothing is asked for.
-            largest
-                .filter(|tile| tile.area > 0.0)
-                .map_or(point, |tile| tile.centre)
-        };
-        let nodes = |(plane, grid): (usize, &Grid)| {
-            let [x, y] = grid.counts();
-            let rows = (0..=y).flat_map(|j| (0..=x).map(move |i| [i, j]));
-            rows.map(|at| node(plane, at)).collect()
-        };
-        grids.iter().enumerate().map(nodes).collect()
-    }
-
-    /// The values at all of them.
-    fn of<T: Sync>(nodes: &[Vec<T>], value: impl Fn(usize, &T) -> f64 + Sync) -> Self {
-        let of_plane = |(plane, nodes): (usize, &Vec<T>)| {
-            let values = nodes.par_iter().map(|node| value(plane, node));
-            values.collect()
-        };
-        Self {
-            planes: nodes.par_iter().enumerate().map(of_plane).collect(),
-        }
-    }
-
     /// The value at a place of a plane: in a cell, linear along either axis.
     #[inline]
     pub(super) fn at(&self, plane: usize, grid: &Grid, place: [f64; 2]) -> f64 {
@@ -76,9 +98,8 @@ impl Table {
     #[inline]
     fn corners(&self, plane: usize, grid: &Grid, [x, y]: [usize; 2]) -> [f64; 4] {
         let row = grid.counts()[0] + 1;
-        let first = y * row + x;
-        let values = &self.planes[plane];
-        [first, first + 1, first + row, first + row + 1].map(|index| values[index])
+        let first = self.starts[plane] + y * row + x;
+        [first, first + 1, first + row, first + row + 1].map(|index| self.values[index])
     }
 }
 
@@ -95,7 +116,7 @@ pub(super) struct Room<'a> {
     /// What each tile scatters of its irradiance, and what of that comes straight from emitters, in unit/m².
     albedos: Vec<f64>,
     direct: Vec<f64>,
-    nodes: Vec<Vec<DVec3>>,
+    nodes: Nodes,
 }
 
 /// What each tile of it is guessed to scatter, in unit/m².
@@ -117,7 +138,7 @@ impl<'a> Room<'a> {
         Self {
             albedos: tiles.list().iter().map(albedo).collect(),
             direct: tiles.list().par_iter().map(direct).collect(),
-            nodes: Table::nodes(tiles),
+            nodes: Nodes::new(tiles),
             tiles,
             emitted,
         }
@@ -139,12 +160,12 @@ impl<'a> Room<'a> {
 
     pub(super) fn solve(&self) -> Solution {
         let (tiles, list) = (self.tiles, self.tiles.list());
-        let seen = |(plane, nodes): (usize, &Vec<DVec3>)| {
-            let shares = nodes.par_iter().map(|&node| tiles.shares(plane, node));
-            shares.collect()
-        };
-        let shares: Vec<Vec<Vec<f64>>> = self.nodes.par_iter().enumerate().map(seen).collect();
         let borders: Vec<_> = tiles.borders().collect();
+        // How much each node sees of each jump, node after node.
+        let width = borders.len().max(1);
+        let mut shares = vec![0.0; self.nodes.list.len() * width];
+        let rows = shares.par_chunks_mut(width).zip(&self.nodes.list);
+        rows.for_each(|(row, &(plane, node))| tiles.shares(plane, node, row));
         // At first as if light were even that is reflected more than once.
         let kept = self.sum(|tile| 1.0 - self.albedos[tile]);
         let least = KEPT * self.sum(|_| 1.0);
@@ -158,7 +179,10 @@ impl<'a> Room<'a> {
                 above[index] -= tile.under.iter().map(|&it| above[it]).sum::<f64>();
             }
             let jumps: Vec<f64> = borders.iter().map(|&it| jump(&above, it)).collect();
-            let table = Table::of(&shares, |_, shares| product(shares, &jumps));
+            let rows = shares.par_chunks(width);
+            let table = self
+                .nodes
+                .filled(rows.map(|row| product(row, &jumps)).collect());
             let next = self.scattered(|index| {
                 let Tile { plane, cell, .. } = list[index];
                 let corners = table.corners(plane, &tiles.grids()[plane], cell);
@@ -188,8 +212,9 @@ impl<'a> Room<'a> {
             scattered, table, ..
         } = solution;
         let (grids, list) = (self.tiles.grids(), self.tiles.list());
-        let emitted = |plane: usize, point| self.emitted.sum(plane, point, grids[plane].normal);
-        let direct = Table::of(&self.nodes, |plane, node| emitted(plane, *node));
+        let emitted =
+            |plane: usize, point: DVec3| self.emitted.sum(plane, point, grids[plane].normal);
+        let direct = self.nodes.table(emitted);
         let mut squares = self.sum(|index| {
             let Tile { plane, cell, .. } = list[index];
             let [direct, reflected] =
