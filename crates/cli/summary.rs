@@ -97,9 +97,10 @@ struct Unseen {
 /// What each way of finding light has brought, as shares of S0 summed over the free sensor points.
 #[derive(Serialize)]
 struct Techniques {
-    /// Summed exactly: sources without geometry, straight and by their images in few flat mirrors, and emitters seen whole.
+    /// Summed exactly: sources without geometry, straight and by their images in few flat mirrors, emitters seen whole, and where
+    /// walks correct a guess of what surfaces scatter, that guess.
     exact: f64,
-    /// Walks from the sensors that looked at emitters.
+    /// Walks from the sensors that looked at emitters, or what they corrected, which may be negative.
     looked: f64,
     /// The same in mirrors.
     mirrored: f64,

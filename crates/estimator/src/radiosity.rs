@@ -17,7 +17,7 @@ use crate::medium::Medium;
 use crate::pass::has_mirrors;
 use crate::receiver::Receiver;
 use glam::DVec3;
-use malus_geometry::{Field, Surfaces, Tile, Tiles};
+use malus_geometry::{Field, Surfaces, Tiles};
 use solution::{Room, Solution, Table};
 
 /// Cells of a room, about.
@@ -130,21 +130,20 @@ impl<'a> Radiosity<'a> {
 
 /// The exitances of emitters by tile; `None` where a tile does not say all of them.
 fn emitted(tiles: &Tiles, medium: &Medium) -> Option<Field> {
-    let Medium {
-        surfaces, emitters, ..
-    } = *medium;
-    let faces = |&triangle: &u32| {
-        let inward = tiles.grids()[tiles.plane(triangle)].normal;
-        surfaces.normal(triangle).dot(inward) > 0.0
-            && surfaces.exposed_area(triangle) >= surfaces.triangle(triangle).area()
-    };
-    let exitance = |tile: &Tile| {
-        let emission = medium.first().materials[tile.surface as usize]
-            .emission
-            .as_ref();
+    let Medium { surfaces, .. } = *medium;
+    let materials = &medium.first().materials;
+    let exitance = |surface: u32| {
+        let emission = materials[surface as usize].emission.as_ref();
         emission.map_or(0.0, |it| it.exitance)
     };
-    let values = tiles.list().iter().map(exitance).collect();
-    let field = tiles.field(values);
-    (emitters.triangles().iter().all(faces) && field.lines() <= LINES).then_some(field)
+    // One that shines into the room with all of its area, or not at all.
+    let told = |triangle: u32| {
+        let inward = tiles.grids()[tiles.plane(triangle)].normal;
+        exitance(surfaces.surface(triangle)) <= 0.0
+            || surfaces.normal(triangle).dot(inward) > 0.0
+                && surfaces.exposed_area(triangle) >= surfaces.triangle(triangle).area()
+    };
+    let values = tiles.list().iter().map(|tile| exitance(tile.surface));
+    let field = tiles.field(values.collect());
+    ((0..surfaces.len() as u32).all(told) && field.lines() <= LINES).then_some(field)
 }

@@ -45,9 +45,10 @@ pub struct Results {
 /// What each way of finding light has brought, as shares of S0 summed over all free sensor points.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Shares {
-    /// Summed exactly: sources without geometry, straight and by their images in few flat mirrors, and emitters seen whole.
+    /// Summed exactly: sources without geometry, straight and by their images in few flat mirrors, emitters seen whole, and where
+    /// walks correct a guess of what surfaces scatter, that guess.
     pub exact: f64,
-    /// Emitters that walks from the sensors looked at.
+    /// Emitters that walks from the sensors looked at, or what they corrected, which may be negative.
     pub looked: f64,
     /// Emitters that walks from the sensors looked at in mirrors.
     pub mirrored: f64,

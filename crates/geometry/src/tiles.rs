@@ -53,8 +53,10 @@ pub struct Tile {
     pub area: f64,
     /// Centre of mass in m.
     pub centre: DVec3,
-    /// A triangle of the surface there.
-    pub triangle: u32,
+    /// The triangle that has the largest piece of it, the middle of that piece in m, and its area in m².
+    triangle: u32,
+    middle: DVec3,
+    largest: f64,
     /// The tiles that lie under it.
     pub under: Vec<usize>,
 }
@@ -261,9 +263,9 @@ impl Tiles {
         tiles.under.sort_unstable();
         for index in 0..tiles.tiles.len() {
             let Tile {
-                triangle, centre, ..
+                triangle, middle, ..
             } = tiles.tiles[index];
-            tiles.tiles[index].under = tiles.at(surfaces, triangle, centre).skip(1).collect();
+            tiles.tiles[index].under = tiles.at(surfaces, triangle, middle).skip(1).collect();
         }
         let same = SAME * surfaces.radius();
         tiles.borders = (0..planes.len())
@@ -291,6 +293,8 @@ impl Tiles {
                 area: 0.0,
                 centre: DVec3::ZERO,
                 triangle,
+                middle: DVec3::ZERO,
+                largest: 0.0,
                 under: Vec::new(),
             }));
             self.sheets.len() - 1
@@ -316,11 +320,13 @@ impl Tiles {
                 corners.reverse();
             }
             let index = self.sheets[sheet].first + y * grid.counts[0] + x;
-            let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
+            let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
             let tile = &mut self.tiles[index];
             tile.area += area;
-            tile.centre += (centre - tile.centre) * (area / tile.area);
-            tile.triangle = triangle;
+            tile.centre += (middle - tile.centre) * (area / tile.area);
+            if area > tile.largest {
+                (tile.triangle, tile.middle, tile.largest) = (triangle, middle, area);
+            }
             self.pieces.push(Piece {
                 tile: index,
                 corners,
@@ -495,7 +501,7 @@ mod tests {
             .sum();
         assert!((200..300).contains(&cells), "{cells}");
         for tile in tiles.list().iter().filter(|tile| tile.area > 0.0) {
-            let at: Vec<usize> = tiles.at(&room, tile.triangle, tile.centre).collect();
+            let at: Vec<usize> = tiles.at(&room, tile.triangle, tile.middle).collect();
             assert!(std::ptr::eq(&tiles.list()[at[0]], tile));
             assert_eq!(at[1..], tile.under);
         }
