@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 /// Rounds of the pilot: so few where these tell enough, and at most so many.
 const FEWEST_ROUNDS: u64 = 8;
-const MOST_ROUNDS: u64 = 18;
+const MOST_ROUNDS: u64 = 12;
 
 /// Walks of the pilot from the emitters, at least.
 const LAUNCHED: u64 = 48;
