@@ -197,3 +197,22 @@ fn sensors_in_the_corners_of_a_mirrored_box_see_a_whole_lattice() {
         assert_estimate(&format!("({x}, {y})"), s0(reading), exact, 0.01);
     }
 }
+
+/// Shares are told by where a walk has met a surface: moved off it, the point would be elsewhere as seen from next to it.
+#[test]
+fn sensors_in_one_corner_share_their_walks_rightly() {
+    let block = "[[shape]]
+        kind = 'box'
+        min = [0.6, 0.6, 0.3]
+        max = [0.7, 0.7, 0.5]
+        material = 'wall'
+        [[sensor]]
+        name = 'tilted'
+        points = [[0, 0, 0], [0.5, 0.5, 0]]
+        normal = [0.5, 0.5, 0.5]";
+    let points = [[1e-12; 3], [0.3, 0.6, 0.0], [0.2, 5e-10, 0.0]];
+    let room = furnace(&points, [0.0, 0.0, 1.0], block, "");
+    for reading in measured(&room) {
+        assert_estimate("together", s0(&reading), 2.0, 0.02);
+    }
+}

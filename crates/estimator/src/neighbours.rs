@@ -120,18 +120,18 @@ pub(crate) fn shared_out<'s>(
 }
 
 impl Member<'_> {
-    /// Sets for each neighbour its share in what a walk of this one finds behind a point that it has met straight; they add
-    /// up to 1. Returns its own.
+    /// Sets for each neighbour its share in what a walk of this one finds behind a point that it has met straight, given with
+    /// the same point moved off its surface; they add up to 1. Returns its own.
     pub(crate) fn share(
         self,
         surfaces: &Surfaces,
-        point: DVec3,
+        [point, off]: [DVec3; 2],
         normal: DVec3,
         seen: &mut Vec<bool>,
         shares: &mut Vec<f64>,
     ) -> f64 {
         let Self { neighbours, place } = self;
-        surfaces.visible_from(point, normal, &neighbours.targets, seen);
+        surfaces.visible_from(off, normal, &neighbours.targets, seen);
         // The walk has come from there.
         seen[place] = true;
         shares.clear();

@@ -304,7 +304,7 @@ impl<'a> Walk<'a> {
                     let Path { seen, shares, .. } = path;
                     lookout.share(member.share(
                         self.medium.surfaces,
-                        vertex.position,
+                        [hit.position, vertex.position],
                         normal,
                         seen,
                         shares,
