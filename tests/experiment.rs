@@ -6,7 +6,15 @@ use std::path::{Path, PathBuf};
 
 /// A scene from the text of its file.
 pub fn scene(toml: &str) -> Scene {
+    scene_beside(&[], toml)
+}
+
+/// The same with other files, by name and text, in its folder.
+pub fn scene_beside(files: &[(&str, &str)], toml: &str) -> Scene {
     let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, toml).unwrap();
     Scene::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"))

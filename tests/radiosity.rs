@@ -1,8 +1,7 @@
 //! Empty convex rooms without mirrors: walks that correct a solution of the radiosity equation.
 
-use crate::experiment::{assert_estimate, evaluate, measured, readings, s0};
+use crate::experiment::{assert_estimate, evaluate, measured, readings, s0, scene, scene_beside};
 use malus_estimator::Results;
-use malus_scene::Scene;
 
 /// What the program says of such a run.
 const CORRECTED: &str = "radiosity";
@@ -56,13 +55,9 @@ const FURNISHED: &str = "
 ";
 
 fn house(estimator: &str, samples: u64) -> Results {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("house.obj"), HOUSE).unwrap();
     let run = format!("[run]\nestimator = '{estimator}'\nsamples = {samples}");
-    let path = folder.path().join("scene.toml");
-    std::fs::write(&path, format!("{FURNISHED}{run}")).unwrap();
-    let scene = Scene::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
-    evaluate(&scene)
+    let toml = format!("{FURNISHED}{run}");
+    evaluate(&scene_beside(&[("house.obj", HOUSE)], &toml))
 }
 
 #[test]
@@ -134,7 +129,7 @@ fn lamp_at(distance: f64) -> String {
 
 #[test]
 fn light_too_uneven_for_tiles_is_found_by_walks_from_the_emitters() {
-    let reason = |toml: &str| evaluate(&crate::experiment::scene(toml)).estimator_reason;
+    let reason = |toml: &str| evaluate(&scene(toml)).estimator_reason;
     assert!(reason(&lamp_at(0.45)).contains(CORRECTED));
     assert!(!reason(&lamp_at(0.01)).contains(CORRECTED));
     let block = "[[shape]]

@@ -1,7 +1,7 @@
 //! Meshes as nobody would draw them: in a furnace E = M/(1 − ρ), and no ray leaves.
 
 use super::{cube, sensors};
-use crate::experiment::{assert_estimate, evaluate, measured, readings, s0, scene};
+use crate::experiment::{assert_estimate, evaluate, measured, readings, s0, scene, scene_beside};
 use glam::DVec3;
 use malus_scene::Scene;
 
@@ -73,9 +73,6 @@ fn model(quads: &Quads) -> String {
 }
 
 fn room(quads: &Quads, points: &[[f64; 3]], normal: [f64; 3], samples: u64) -> Scene {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("room.obj"), model(quads)).unwrap();
-    let path = folder.path().join("scene.toml");
     let toml = format!(
         "[[mesh]]
         file = 'room.obj'
@@ -88,8 +85,7 @@ fn room(quads: &Quads, points: &[[f64; 3]], normal: [f64; 3], samples: u64) -> S
         samples = {samples}",
         sensors(points, normal)
     );
-    std::fs::write(&path, toml).unwrap();
-    Scene::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"))
+    scene_beside(&[("room.obj", &model(quads))], &toml)
 }
 
 /// On a T-junction, on an edge, on a sliver, and inside.

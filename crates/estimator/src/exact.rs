@@ -46,8 +46,8 @@ struct Ray<'a> {
     steps: Vec<Step>,
 }
 
-/// What each variant has at each sensor from the surfaces in `sight`, by a guess of what surfaces scatter, and from all point, spot and distant sources that it
-/// sees: straight, and where walks look into mirrors by all listed images.
+/// What each variant has at each sensor from the surfaces in `sight`, by a guess of what surfaces scatter, and from all point,
+/// spot and distant sources that it sees: straight, and where walks look into mirrors by all listed images.
 pub(crate) fn known<const N: usize>(
     passes: &Passes,
     channels: &Channels,

@@ -243,7 +243,8 @@ impl<'a> Walk<'a> {
         }
         self.depth += 1;
         let (hit, meeting) = self.medium.meet(self.origin, self.direction)?;
-        let emission = match self.guesses() && self.depth > 1 {
+        let guess = self.guess(&hit, meeting.normal);
+        let emission = match guess.is_some() && self.depth > 1 {
             // Known where the walk came from.
             true => 0.0,
             false => self.emission_share(&hit, &meeting),
@@ -279,7 +280,7 @@ impl<'a> Walk<'a> {
             flat: meeting.facet.is_some(),
             shared: false,
             black: meeting.black(),
-            guess: self.guess(&hit, normal),
+            guess: guess.unwrap_or_default(),
             rival: Rival::default(),
         };
         if vertex.black {
@@ -313,7 +314,8 @@ impl<'a> Walk<'a> {
             }
         }
         vertex.diffuse = odds.diffuse;
-        if odds.diffuse > 0.0 && meeting.cover.scatters() && !self.guesses() {
+        // A guess looks at all emitters from everywhere.
+        if odds.diffuse > 0.0 && meeting.cover.scatters() && guess.is_none() {
             self.join(path, &mut vertex, &meeting);
         }
         let [lobe, u, v, split] = self.uniforms.at(self.depth, self.role.scattering());
@@ -396,20 +398,13 @@ impl<'a> Walk<'a> {
         Some(event)
     }
 
-    /// Whether it corrects a guess, which looks at all emitters from everywhere.
-    fn guesses(&self) -> bool {
-        self.medium.radiosity.is_some() && matches!(self.role, Role::Looking(_))
-    }
-
-    /// What is known beforehand of the light at a point where a walk from a sensor meets a surface.
-    fn guess(&self, hit: &Hit, normal: DVec3) -> Guess {
-        match (&self.role, self.medium.radiosity) {
-            (Role::Looking(_), Some(radiosity)) => {
-                let [_, chance, ..] = self.uniforms.at(self.depth, Purpose::Bridge);
-                radiosity.at(hit.triangle, hit.position, normal, chance)
-            }
-            _ => Guess::default(),
-        }
+    /// What is known beforehand of the light at a point where a walk that corrects a guess meets a surface.
+    fn guess(&self, hit: &Hit, normal: DVec3) -> Option<Guess> {
+        let radiosity = self.medium.radiosity?;
+        matches!(self.role, Role::Looking(_)).then(|| {
+            let [_, chance, ..] = self.uniforms.at(self.depth, Purpose::Bridge);
+            radiosity.at(hit.triangle, hit.position, normal, chance)
+        })
     }
 
     /// What a scattering vertex sees, or what competes with joining it to a sensor.

@@ -69,8 +69,8 @@ impl Contour {
         }
     }
 
-    /// For each line (there is a place for each), what it adds to the form factors (shares of density cos θ/π) of all that lies to its left, seen from a
-    /// point (in m) of a surface with this unit normal, before and above which that lies whole.
+    /// For each line (there is a place for each), what it adds to the form factors (shares of density cos θ/π) of all that
+    /// lies to its left, seen from a point (in m) of a surface with this unit normal, before and above which that lies whole.
     pub fn shares(&self, point: DVec3, normal: DVec3, shares: &mut [f64]) {
         self.arch.dispatch(Shares {
             lines: &self.lines,

@@ -157,25 +157,29 @@ impl Facets {
 
 /// A convex polygon in the plane across `normal` through `origin` that holds the points, anticlockwise about the normal.
 fn hull(points: impl Iterator<Item = DVec3>, origin: DVec3, normal: DVec3) -> Vec<DVec3> {
-    let (x, y) = across(normal);
-    let flat = points.map(|v| DVec2::new((v - origin).dot(x), (v - origin).dot(y)));
-    let mut corners = convex(outermost(flat.collect()));
+    let (mut corners, lifted) = flat_hull(points, origin, normal);
     if corners.len() > CORNERS {
         corners = rectangle(&corners).to_vec();
     }
-    let lifted = corners.iter().map(|p| origin + x * p.x + y * p.y);
-    lifted.collect()
+    corners.into_iter().map(lifted).collect()
+}
+
+/// The convex hull of points in the plane across `normal` through `origin`, anticlockwise, and what lifts it back there.
+fn flat_hull(
+    points: impl Iterator<Item = DVec3>,
+    origin: DVec3,
+    normal: DVec3,
+) -> (Vec<DVec2>, impl Fn(DVec2) -> DVec3) {
+    let (x, y) = across(normal);
+    let flat = points.map(|v| DVec2::new((v - origin).dot(x), (v - origin).dot(y)));
+    let corners = convex(outermost(flat.collect()));
+    (corners, move |p| origin + x * p.x + y * p.y)
 }
 
 /// The smallest rectangle that holds points (some at least) of one plane, anticlockwise about its normal.
 pub(crate) fn rectangle_about(points: &[DVec3], normal: DVec3) -> [DVec3; 4] {
-    let (x, y) = across(normal);
-    let origin = points[0];
-    let flat = points
-        .iter()
-        .map(|&v| DVec2::new((v - origin).dot(x), (v - origin).dot(y)));
-    let corners = rectangle(&convex(outermost(flat.collect())));
-    corners.map(|p| origin + x * p.x + y * p.y)
+    let (corners, lifted) = flat_hull(points.iter().copied(), points[0], normal);
+    rectangle(&corners).map(lifted)
 }
 
 /// A ball about a polygon: its centre and the square of its radius.

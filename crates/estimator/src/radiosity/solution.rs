@@ -16,7 +16,6 @@ const SETTLED: f64 = 2e-3;
 const KEPT: f64 = 1e-4;
 
 /// Where irradiances are tabled: at the corners of all cells, those of each plane row by row.
-#[derive(Clone)]
 struct Nodes {
     /// Plane and place, in m.
     list: Vec<(usize, DVec3)>,
