@@ -16,6 +16,7 @@ mod wide;
 
 use crate::Mesh;
 use crate::crossing::{Beside, Line};
+use crate::surfaces::tolerance;
 use frame::{Frame, rounded_up};
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
@@ -29,6 +30,9 @@ use packet::Sight;
 pub(crate) use targets::Question;
 pub use targets::Targets;
 
+/// How many tolerances thick a stack of surfaces may be, each of which lies in the next: half of it, from its middle.
+const STACKED: f64 = 4.0;
+
 /// The triangles of a scene below a tree of boxes: what finds out which of them a ray may cross.
 pub struct Tree {
     layout: Layout,
@@ -41,6 +45,9 @@ pub struct Tree {
     frame: Frame,
     radius: f64,
     slack: f64,
+    /// Surfaces that lie in one another do so to within this, in m: an end of a segment farther off leaves all of them on
+    /// one side.
+    stack: f64,
 }
 
 /// What a ray meets first.
@@ -107,16 +114,22 @@ impl<E: Fn(u32, &Line, f64) -> bool> Visit for Nearest<'_, E> {
 struct Any<'a, W, E> {
     tree: &'a Tree,
     segment: &'a Segment,
+    /// Whether something stops the ray for sure where it crosses the triangle at a place among the leaves.
     whole: W,
     exists: E,
     blocked: bool,
 }
 
-impl<W: Fn(u32) -> bool, E: Fn(u32, &Line, f64) -> bool> Visit for Any<'_, W, E> {
+impl<W: Fn(usize) -> bool, E: Fn(u32, &Line, f64) -> bool> Visit for Any<'_, W, E> {
     #[inline(always)]
     fn visit(&mut self, place: usize, reach: f32, surely: bool) -> f32 {
-        self.blocked = surely && (self.whole)(self.tree.triangles[place])
-            || self.segment.crosses(self.tree, place, &self.exists);
+        let whole = || (self.whole)(place);
+        self.blocked = surely && whole()
+            || self
+                .segment
+                .crosses(self.tree, place, &|triangle, line: &Line, distance| {
+                    whole() || (self.exists)(triangle, line, distance)
+                });
         if self.blocked { ENOUGH } else { reach }
     }
 }
@@ -143,6 +156,7 @@ impl Tree {
             frame,
             radius,
             slack,
+            stack: STACKED * tolerance(centre, radius),
         }
     }
 
@@ -232,8 +246,9 @@ impl Tree {
         whole: impl Fn(u32) -> bool,
         exists: impl Fn(u32, &Line, f64) -> bool,
     ) -> bool {
+        let stops = |place: usize| whole(self.triangles[place]) || self.parts(place, from, to);
         self.segment(from, to)
-            .is_some_and(|segment| self.blocked(&segment, whole, exists))
+            .is_some_and(|segment| self.blocked(&segment, stops, exists))
     }
 
     /// Whether any triangle that `exists` crosses the ray after the origin; one that is `whole` exists wherever it is
@@ -246,15 +261,24 @@ impl Tree {
         whole: impl Fn(u32) -> bool,
         exists: impl Fn(u32, &Line, f64) -> bool,
     ) -> bool {
+        let stops = |place: usize| whole(self.triangles[place]);
         self.ray(origin, direction, f64::INFINITY)
-            .is_some_and(|ray| self.blocked(&ray, whole, exists))
+            .is_some_and(|ray| self.blocked(&ray, stops, exists))
+    }
+
+    /// Whether two points lie on different sides of a triangle, of all that may cover it, and of what may cover that: of a
+    /// segment between them that crosses the triangle it need not be asked which of these exists there.
+    #[inline]
+    fn parts(&self, place: usize, from: DVec3, to: DVec3) -> bool {
+        let beside = Beside::new(from, &self.corners[place], self.stack);
+        beside.sides(&to.to_array().map(|part| [part])).1 == 1
     }
 
     #[inline]
     fn blocked(
         &self,
         segment: &Segment,
-        whole: impl Fn(u32) -> bool,
+        whole: impl Fn(usize) -> bool,
         exists: impl Fn(u32, &Line, f64) -> bool,
     ) -> bool {
         let reach = rounded_up(segment.length * self.frame.scale);
@@ -295,10 +319,16 @@ impl Tree {
                     last: None,
                     single,
                     beside: |place: usize| Beside::new(from, &self.corners[place], self.slack),
+                    beyond: |place: usize| Beside::new(from, &self.corners[place], self.stack),
                     whole: |place: usize| whole(self.triangles[place]),
                     between: |to, place: usize| {
-                        self.segment(from, to)
-                            .is_some_and(|segment| segment.crosses(self, place, &exists))
+                        self.segment(from, to).is_some_and(|segment| {
+                            segment.crosses(self, place, &|triangle, line: &Line, distance| {
+                                whole(triangle)
+                                    || self.parts(place, from, to)
+                                    || exists(triangle, line, distance)
+                            })
+                        })
                     },
                 });
             }

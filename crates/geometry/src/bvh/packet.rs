@@ -50,7 +50,7 @@ fn bits(whether: impl Fn(usize) -> bool) -> u32 {
 }
 
 /// Which targets see a point within the scene's bounding sphere, each in front of the other.
-pub(super) struct Sight<'a, S, P, W, B> {
+pub(super) struct Sight<'a, S, P, Q, W, B> {
     pub wide: &'a Wide,
     pub frame: &'a Frame,
     pub question: &'a Question<'a>,
@@ -62,16 +62,19 @@ pub(super) struct Sight<'a, S, P, W, B> {
     pub single: S,
     /// What is known of the point and the triangle at a place among the leaves.
     pub beside: P,
+    /// The same of the triangle with all that may cover it.
+    pub beyond: Q,
     /// Whether such a triangle exists wherever it is crossed.
     pub whole: W,
     /// Whether it lies between the point and another.
     pub between: B,
 }
 
-impl<S, P, W, B> Work for Sight<'_, S, P, W, B>
+impl<S, P, Q, W, B> Work for Sight<'_, S, P, Q, W, B>
 where
     S: FnMut(DVec3) -> bool,
     P: Fn(usize) -> Beside,
+    Q: Fn(usize) -> Beside,
     W: Fn(usize) -> bool,
     B: Fn(DVec3, usize) -> bool,
 {
@@ -89,10 +92,11 @@ where
     }
 }
 
-impl<S, P, W, B> Sight<'_, S, P, W, B>
+impl<S, P, Q, W, B> Sight<'_, S, P, Q, W, B>
 where
     S: FnMut(DVec3) -> bool,
     P: Fn(usize) -> Beside,
+    Q: Fn(usize) -> Beside,
     W: Fn(usize) -> bool,
     B: Fn(DVec3, usize) -> bool,
 {
@@ -221,7 +225,7 @@ where
                     may &= !off;
                     let mut stopped = may & inside & parted;
                     if stopped != 0 && !(self.whole)(place) {
-                        stopped = 0;
+                        stopped &= (self.beyond)(place).sides(&packet.places).1;
                     }
                     may &= !stopped;
                     while may != 0 {

@@ -140,6 +140,34 @@ fn all_trees_answer_alike_where_surfaces_coincide() {
 }
 
 #[test]
+fn a_surface_hidden_by_a_later_one_behind_it_stands_before_nothing_of_that() {
+    // A lamp after the ceiling that it lies in, and behind that by less than what counts as one place.
+    let wide = [4.0 * DVec3::X, 4.0 * DVec3::Y];
+    let ceiling = grid(DVec3::new(-2.0, -2.0, 1.0), wide[0], wide[1], [1, 1]);
+    let at = |behind: f64| DVec3::new(-0.25, -0.25, 1.0 + behind);
+    let depth = 0.5 * surfaces(std::slice::from_ref(&ceiling)).tolerance();
+    let lamp = grid(at(depth), 0.5 * DVec3::X, 0.5 * DVec3::Y, [2, 2]);
+    let scene = surfaces(&[ceiling, lamp]);
+    assert!(!scene.coincidences().is_empty());
+    let lit = DVec3::new(0.3, 0.2, 0.0);
+    let place = |x: f64, height: f64| (DVec3::new(x, 0.1, height), DVec3::NEG_Z);
+    let on_lamp = 1.0 + depth - scene.offset();
+    // On the lamp, between the two; above it; above the ceiling beside it, by as little and by more.
+    let targets = [
+        place(0.1, on_lamp),
+        place(0.1, 1.5),
+        place(0.7, on_lamp),
+        place(0.7, 1.5),
+    ];
+    let seen = [true, false, false, false];
+    assert_eq!(targets.map(|(at, _)| scene.visible(lit, at)), seen);
+    assert_eq!(targets.map(|(at, _)| scene.visible(at, lit)), seen);
+    let mut found = Vec::new();
+    scene.visible_from(lit, DVec3::Z, &scene.targets(&targets), &mut found);
+    assert_eq!(found, seen);
+}
+
+#[test]
 fn a_tree_too_deep_for_the_usual_stack_answers_alike() {
     // Ever smaller triangles towards a point: each step of the way there divides the rest.
     let mut mesh = Mesh::default();
