@@ -18,7 +18,7 @@ use std::io::{Read, Write};
 use std::path::Path;
 
 /// First line of a file; the number rises whenever what follows it is laid out anew.
-const FORM: &str = "malus state 11\n";
+const FORM: &str = "malus state 12\n";
 
 /// What is said of a file that is not as it was written.
 const DAMAGED: &str =

@@ -17,7 +17,7 @@ const PARTS: u32 = 64;
 const MOST: u32 = 8 * PARTS;
 
 /// Most walks that a sensor takes in a round, of which one of its neighbours takes one.
-const TIMES: u32 = 4;
+const TIMES: u32 = 2;
 
 // Points of a sequence are spread best where their number is a power of two. So are all shares.
 const _: () = assert!(PARTS.is_power_of_two() && MOST.is_power_of_two() && TIMES.is_power_of_two());
@@ -242,9 +242,9 @@ mod tests {
         };
         shares.share_out(&[0, 1, 2, 3]);
         shares.share_out(&[4]);
-        // A quarter of the greatest is more than the least; the nearest power of two to 75 is 64.
-        assert_eq!(shares.parts, [64, 64, 64, 64, 8]);
-        assert_eq!(shares.times, [2, 1, 1, 4, 1]);
+        // Half of the greatest is more than the least; the nearest power of two to 150 is 128.
+        assert_eq!(shares.parts, [128, 128, 128, 128, 8]);
+        assert_eq!(shares.times, [1, 1, 1, 2, 1]);
         let nearest = [0.3, 1.4, 1.5, 2.8, 2.9, 45.0, 46.0, 1e9].map(power_of_two);
         assert_eq!(nearest, [1, 1, 2, 2, 4, 32, 64, MOST]);
     }

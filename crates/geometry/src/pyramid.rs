@@ -83,6 +83,9 @@ impl Surfaces {
     #[must_use]
     pub fn before(&self, apex: DVec3, corners: &[DVec3], most: usize) -> Option<Vec<u32>> {
         let pyramid = Pyramid::new(apex, corners)?;
+        if self.share_a_cell(apex, &pyramid) {
+            return Some(Vec::new());
+        }
         let (slack, tolerance) = (self.slack(), self.tolerance());
         let mut found = Vec::new();
         let complete = self.boxes().all(
@@ -97,6 +100,19 @@ impl Surfaces {
         // The same in every tree.
         found.sort_unstable();
         complete.then_some(found)
+    }
+
+    /// Whether the apex and the polygon, but for where it touches a surface, lie in one cell, in which all see each other.
+    fn share_a_cell(&self, apex: DVec3, pyramid: &Pyramid) -> bool {
+        let Some(cell) = self.cell(apex) else {
+            return false;
+        };
+        let (base, _) = pyramid.planes[0];
+        let off = |&corner: &DVec3| corner + base * self.offset();
+        let corners = pyramid.corners.iter();
+        corners
+            .map(off)
+            .all(|corner| self.cell(corner) == Some(cell))
     }
 }
 
@@ -141,6 +157,24 @@ mod tests {
         assert!(!sees_whole(&thread, floor, &SQUARE));
         let reversed: Vec<DVec3> = SQUARE.into_iter().rev().collect();
         assert!(sees_whole(&beside, floor, &reversed) && !sees_whole(&within, floor, &reversed));
+    }
+
+    #[test]
+    fn in_an_empty_room_all_is_seen_whole_but_what_lies_outside() {
+        let mut mesh = Mesh::default();
+        let (positions, triangles) = shape::cuboid(DVec3::ZERO, DVec3::ONE, true);
+        mesh.append(&positions, &triangles, 0, 0);
+        let empty = Surfaces::new(mesh).unwrap();
+        let floor = DVec3::new(0.5, 0.5, 1e-9);
+        assert!(empty.cell(floor).is_some());
+        assert!(sees_whole(&empty, floor, &SQUARE));
+        // From above the ceiling, and half of it behind a wall.
+        assert!(sees_whole(&empty, DVec3::new(0.5, 0.5, 2.0), &SQUARE));
+        let beyond = SQUARE.map(|corner| corner + 0.5 * DVec3::X);
+        assert!(!sees_whole(&empty, floor, &beyond));
+        // The floor from above the ceiling.
+        let below = SQUARE.map(|corner| corner - DVec3::Z);
+        assert!(!sees_whole(&empty, DVec3::new(0.5, 0.5, 2.0), &below));
     }
 
     #[test]

@@ -115,7 +115,7 @@ fn a_damaged_shard_is_told_by_its_name() {
     std::fs::write(&path, b"malus state 9\n...").unwrap();
     assert_told(
         &folder.unmerged(&["out"]),
-        &["is of form 9, this version of malus reads form 11"],
+        &["is of form 9, this version of malus reads form 12"],
     );
 }
 
@@ -232,10 +232,10 @@ fn a_run_goes_on_with_its_own_state_only() {
     }
     let told = folder.refused(&["run", "room.toml", "-o", "out", "--resume"]);
     assert_told(&told, &["out/checkpoint.malus: is shard 1/2"]);
-    std::fs::write(&state, b"malus state 11\nabc").unwrap();
+    std::fs::write(&state, b"malus state 12\nabc").unwrap();
     let told = folder.refused(&["run", "room.toml", "-o", "out", "--resume"]);
     assert_told(&told, &["out/checkpoint.malus: is damaged"]);
-    assert_eq!(std::fs::read(&state).unwrap(), b"malus state 11\nabc");
+    assert_eq!(std::fs::read(&state).unwrap(), b"malus state 12\nabc");
 }
 
 /// A directory stands where the file should go, as for a disk that is full or may not be written to.
