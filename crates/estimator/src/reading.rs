@@ -22,6 +22,8 @@ pub(crate) struct Readings<'a> {
     pub counted: bool,
     /// Whether sensors tell each other what they have met.
     pub shared: bool,
+    /// Whether walks correct a guess, of which a sensor's share is known but for its rounding.
+    pub guessed: bool,
     /// Which of so many variants is read.
     pub variant: (usize, usize),
 }
@@ -56,6 +58,10 @@ impl Unmet {
         unmet * unmet
     }
 }
+
+/// What rounding may leave of a sensor's share of a guess, as a share of S0: form factors of what lies at the horizon, next to a
+/// corner, have 10 digits.
+const ROUNDING: f64 = 1e-10;
 
 /// A standard error with so much variance more.
 fn widened(standard_error: f64, variance: f64) -> f64 {
@@ -108,6 +114,25 @@ impl<'a> Readings<'a> {
 
     /// Variance at each sensor that the spread of its own replicas does not tell.
     fn hidden(&self, tally: &Tally) -> Vec<f64> {
+        let mut hidden = self.unseen(tally);
+        if self.guessed {
+            for (sensor, variance) in hidden.iter_mut().enumerate() {
+                *variance += self.rounding(self.s0(tally, sensor, 0.0).mean);
+            }
+        }
+        hidden
+    }
+
+    /// Variance of the rounding of S0.
+    fn rounding(&self, s0: f64) -> f64 {
+        match self.guessed {
+            true => (ROUNDING * s0).powi(2),
+            false => 0.0,
+        }
+    }
+
+    /// Variance at each sensor of what no walk may have met yet.
+    fn unseen(&self, tally: &Tally) -> Vec<f64> {
         let walks: Vec<f64> = (0..self.receivers.len())
             .map(|sensor| self.walks(tally, sensor))
             .collect();
@@ -210,7 +235,7 @@ impl<'a> Readings<'a> {
         // Points are walked from independently, so a mean over them has as many times the walks.
         let walks: f64 = free.iter().map(|&s| self.walks(tally, s)).sum();
         let unmet = Unmet::mean(free.iter().map(|&s| self.unmet[s]));
-        let variance = unmet.variance(walks.max(1.0));
+        let variance = unmet.variance(walks.max(1.0)) + self.rounding(main.mean + known(0));
         let widened = |error| widened(error, variance);
         let paired = |channel| Paired::new(tally, known, channel, mean, widened);
         let readings: Vec<Reading> = range

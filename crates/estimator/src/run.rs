@@ -269,6 +269,7 @@ fn run_with<const N: usize>(
         unmet: unmet.clone(),
         counted: cells.is_some(),
         shared: techniques.mirrored,
+        guessed: radiosity.is_some(),
         variant: (variant, scenes.len()),
     };
     let first = readings(0);
