@@ -115,18 +115,16 @@ impl<'a> Readings<'a> {
     /// Variance at each sensor that the spread of its own replicas does not tell.
     fn hidden(&self, tally: &Tally) -> Vec<f64> {
         let mut hidden = self.unseen(tally);
-        if self.guessed {
-            for (sensor, variance) in hidden.iter_mut().enumerate() {
-                *variance += self.rounding(self.s0(tally, sensor, 0.0).mean);
-            }
+        for (sensor, variance) in hidden.iter_mut().enumerate() {
+            *variance += self.rounding(|| self.s0(tally, sensor, 0.0).mean);
         }
         hidden
     }
 
     /// Variance of the rounding of S0.
-    fn rounding(&self, s0: f64) -> f64 {
+    fn rounding(&self, s0: impl FnOnce() -> f64) -> f64 {
         match self.guessed {
-            true => (ROUNDING * s0).powi(2),
+            true => (ROUNDING * s0()).powi(2),
             false => 0.0,
         }
     }
@@ -235,7 +233,7 @@ impl<'a> Readings<'a> {
         // Points are walked from independently, so a mean over them has as many times the walks.
         let walks: f64 = free.iter().map(|&s| self.walks(tally, s)).sum();
         let unmet = Unmet::mean(free.iter().map(|&s| self.unmet[s]));
-        let variance = unmet.variance(walks.max(1.0)) + self.rounding(main.mean + known(0));
+        let variance = unmet.variance(walks.max(1.0)) + self.rounding(|| main.mean + known(0));
         let widened = |error| widened(error, variance);
         let paired = |channel| Paired::new(tally, known, channel, mean, widened);
         let readings: Vec<Reading> = range

@@ -65,17 +65,18 @@ struct Segment {
 }
 
 impl Segment {
-    /// Whether the triangle at a place among the leaves exists where it crosses this, if it does.
+    /// Whether the triangle at a place among the leaves crosses this, and stops it wherever it does or exists there.
     #[inline(always)]
     fn crosses(
         &self,
         tree: &Tree,
         place: usize,
+        stops: impl Fn(usize) -> bool,
         exists: &impl Fn(u32, &Line, f64) -> bool,
     ) -> bool {
         match self.line.crossing(&tree.corners[place]) {
             Some(distance) if distance > 0.0 && distance < self.length => {
-                exists(tree.triangles[place], &self.line, distance)
+                stops(place) || exists(tree.triangles[place], &self.line, distance)
             }
             _ => false,
         }
@@ -111,25 +112,21 @@ impl<E: Fn(u32, &Line, f64) -> bool> Visit for Nearest<'_, E> {
 }
 
 /// The search for anything on a segment.
-struct Any<'a, W, E> {
+struct Any<'a, S, E> {
     tree: &'a Tree,
     segment: &'a Segment,
-    /// Whether something stops the ray for sure where it crosses the triangle at a place among the leaves.
-    whole: W,
+    /// Whether the triangle at a place among the leaves, or what covers it, stops the ray wherever that crosses it.
+    stops: S,
     exists: E,
     blocked: bool,
 }
 
-impl<W: Fn(usize) -> bool, E: Fn(u32, &Line, f64) -> bool> Visit for Any<'_, W, E> {
+impl<S: Fn(usize) -> bool, E: Fn(u32, &Line, f64) -> bool> Visit for Any<'_, S, E> {
     #[inline(always)]
     fn visit(&mut self, place: usize, reach: f32, surely: bool) -> f32 {
-        let whole = || (self.whole)(place);
-        self.blocked = surely && whole()
-            || self
-                .segment
-                .crosses(self.tree, place, &|triangle, line: &Line, distance| {
-                    whole() || (self.exists)(triangle, line, distance)
-                });
+        let Self { tree, segment, .. } = *self;
+        self.blocked = surely && (self.stops)(place)
+            || segment.crosses(tree, place, &self.stops, &self.exists);
         if self.blocked { ENOUGH } else { reach }
     }
 }
@@ -246,7 +243,7 @@ impl Tree {
         whole: impl Fn(u32) -> bool,
         exists: impl Fn(u32, &Line, f64) -> bool,
     ) -> bool {
-        let stops = |place: usize| whole(self.triangles[place]) || self.parts(place, from, to);
+        let stops = |place| self.stops(place, from, to, &whole);
         self.segment(from, to)
             .is_some_and(|segment| self.blocked(&segment, stops, exists))
     }
@@ -266,26 +263,28 @@ impl Tree {
             .is_some_and(|ray| self.blocked(&ray, stops, exists))
     }
 
-    /// Whether two points lie on different sides of a triangle, of all that may cover it, and of what may cover that: of a
-    /// segment between them that crosses the triangle it need not be asked which of these exists there.
+    /// Whether a segment between two points is stopped wherever it crosses a triangle: that is whole, or the points lie on
+    /// different sides of it, of all that may cover it, and of what may cover that.
     #[inline]
-    fn parts(&self, place: usize, from: DVec3, to: DVec3) -> bool {
-        let beside = Beside::new(from, &self.corners[place], self.stack);
-        beside.sides(&to.to_array().map(|part| [part])).1 == 1
+    fn stops(&self, place: usize, from: DVec3, to: DVec3, whole: &impl Fn(u32) -> bool) -> bool {
+        whole(self.triangles[place]) || {
+            let beside = Beside::new(from, &self.corners[place], self.stack);
+            beside.sides(&to.to_array().map(|part| [part])).1 == 1
+        }
     }
 
     #[inline]
     fn blocked(
         &self,
         segment: &Segment,
-        whole: impl Fn(usize) -> bool,
+        stops: impl Fn(usize) -> bool,
         exists: impl Fn(u32, &Line, f64) -> bool,
     ) -> bool {
         let reach = rounded_up(segment.length * self.frame.scale);
         let mut search = Any {
             tree: self,
             segment,
-            whole,
+            stops,
             exists,
             blocked: false,
         };
@@ -323,11 +322,8 @@ impl Tree {
                     whole: |place: usize| whole(self.triangles[place]),
                     between: |to, place: usize| {
                         self.segment(from, to).is_some_and(|segment| {
-                            segment.crosses(self, place, &|triangle, line: &Line, distance| {
-                                whole(triangle)
-                                    || self.parts(place, from, to)
-                                    || exists(triangle, line, distance)
-                            })
+                            let stops = |place| self.stops(place, from, to, &whole);
+                            segment.crosses(self, place, stops, &exists)
                         })
                     },
                 });
